@@ -121,6 +121,17 @@ class IEye {
   virtual void sights(std::vector<Sight>& out) = 0;
 };
 
+/// Logs the mistakes of agents. Offered by game control.
+class IRemarks {
+ public:
+  SPARK_INTERFACE(IRemarks, 1);
+  virtual ~IRemarks() = default;
+  /// Logs that an action of the agent had no effect, or another than it says; `why`: one line with what was expected
+  /// and what was found. Each kind of mistake of an agent is logged once: lines that differ only in numbers and in what
+  /// they quote ('...') are of one kind. False if the line was dropped because there were too many. Simulation thread.
+  virtual bool remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) = 0;
+};
+
 /// Executes the actions of its agent that carry its predicate. Registered by `gamecontrol`.
 class Effector : public SceneNode {
   SPARK_CLASS(Effector, SceneNode)
@@ -139,13 +150,21 @@ class Effector : public SceneNode {
   /// Sets that name, before the agent's effectors are listed; "": the node's.
   void setMessageName(std::string name) { messageName_ = std::move(name); }
   /// Executes `(predicate arguments...)`, in the act phase. Immediate effectors act now; others store the command and
-  /// act in the prepare phase. Returns "" or one line that says what was wrong (expected, found). Must not throw.
+  /// act in the prepare phase. Returns "" or one line that says what was wrong (expected, found); the log names the
+  /// agent and the predicate, too, and has one line for each kind of mistake (IRemarks). Must not throw.
   virtual std::string act(const Element& action) = 0;
 
   /// The innermost agent aspect above; nullptr outside of agents.
   AgentAspect* agent() const { return ancestor<AgentAspect>(); }
 
+ protected:
+  /// As the return value of act(), for reasons that appear later, such as in the prepare phase. `kind`: 0 to 31; one
+  /// line is logged for each, and only then `why()` is called, which returns it. Simulation thread.
+  template <class Why>
+  void refuse(int kind, Why&& why);
+
  private:
+  std::uint32_t refused_ = 0;  ///< a bit for each kind
   std::string messageName_;
 };
 
@@ -210,6 +229,18 @@ class IGameControl {
   /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
 };
+
+template <class Why>
+void Effector::refuse(int kind, Why&& why) {
+  if (refused_ >> kind & 1) return;
+  AgentAspect* const aspect = agent();
+  auto* const remarks = kernel().root().find<IRemarks>(IGameControl::kPath);
+  if (!aspect || !remarks)
+    kernel().log().warning("{}: {}", path(), why());
+  else if (!remarks->remark(aspect->outermost(), predicate(), why()))
+    return;
+  refused_ |= std::uint32_t(1) << kind;
+}
 
 /// Marks the effector whose command says that the agent has finished its cycle in lockstep. Offered by the `syn`
 /// effector.

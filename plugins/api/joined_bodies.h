@@ -11,11 +11,12 @@
 
 namespace spark::engine {
 
-/// Calls `visit(a, b)` for each two bodies that a joint connects, directly or by a chain of connectors
-/// (Body::connector). A pair may be visited several times and in either order. The static world is no body: what is
-/// jointed to it collides with static geoms.
+/// Calls `visit(a, b)` for each two bodies that do not collide because a joint connects them, directly or by a chain of
+/// connectors (Body::connector). A pair may be visited several times and in either order. The static world is no body:
+/// what is jointed to it collides with static geoms.
 template <class Visit>
 void forEachJoined(const Model& model, Visit visit) {
+  if (model.parameters.joinedCollide) return;
   const auto isConnector = [&](Index body) { return body != kNone && model.bodies[body].connector; };
   bool connectors = false;
   for (const Joint& j : model.joints) {

@@ -29,6 +29,7 @@ class NumberArguments {
   /// `out` is then unchanged, and the command should have no effect. Text that is no number is converted as C's atof
   /// does, as in the installed base ("abc" is 0, "1.5x" is 1.5), and causes a remark.
   bool operator()(std::size_t index, double& out) {
+    count_ = std::max(count_, index + 1);
     const Element argument = action_.at(index + 1);
     if (!argument || argument.isList())
       return refuse(fmt::format("expected a number as argument {}, found {}", index + 1, argument ? "a list" : "none"));
@@ -42,8 +43,14 @@ class NumberArguments {
     out = v;
     return true;
   }
-  /// The return value of act(): the remark, or "" when all arguments were numbers. Call it once.
-  std::string remark() { return std::move(remark_); }
+  /// The return value of act(): the remark, or "" when all arguments were numbers and there were no others. Call it
+  /// once, after all arguments were read.
+  std::string remark() {
+    if (action_.at(count_ + 1))
+      refuse(fmt::format("expected {} argument{}, found {}: the others are ignored", count_, count_ == 1 ? "" : "s",
+                         action_.size() - 1));
+    return std::move(remark_);
+  }
 
  private:
   static constexpr std::size_t kShown = 60;  // bytes of a bad argument in the remark
@@ -53,8 +60,15 @@ class NumberArguments {
     return false;
   }
   Element action_;
+  std::size_t count_ = 0;  ///< arguments that were read
   std::string remark_;
 };
+
+/// The return value of act() for an action without arguments: "", or a remark that it has some, which are ignored.
+inline std::string expectNoArguments(const Element& action) {
+  return action.at(1) ? fmt::format("expected no arguments, found {}: they are ignored", action.size() - 1)
+                      : std::string();
+}
 
 /// `speed` [rad/s] clamped to the joint's IJoint::maxSpeed(); 0 there: not clamped.
 inline double clampSpeed(const IJoint& joint, int axis, double speed) {

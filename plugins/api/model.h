@@ -32,6 +32,7 @@ struct WorldParameters {
   double erp = 0.2;                    ///< fraction of a constraint's error that one step corrects, 0..1
   double cfm = 1e-5;                   ///< constraint force mixing, 0 or more
   bool autoDisable = true;             ///< bodies at rest fall asleep
+  bool joinedCollide = false;          ///< bodies that joints connect collide with each other
   double contactSurfaceLayer = 0.001;  ///< allowed penetration depth of contacts [m]
   double timestep = 0;                 ///< of the engine's steps [s]; 0: as the engine says
   /// Read by MuJoCo alone (MuJoCo's documentation, "option").

@@ -10,7 +10,7 @@
 namespace spark {
 
 /// `(draw (set Red.3.plan) (line (from 0 0 0) (to 1 2 0)) (text (at 1 2 0.5) (say "there")))`: replaces the shapes of a
-/// set, in the world frame. Without a drawing server it does nothing.
+/// set, in the world frame. Without a drawing server it does nothing but say so.
 class DrawEffector : public Effector {
   SPARK_CLASS(DrawEffector, Effector)
  public:
@@ -26,14 +26,18 @@ class DrawEffector : public Effector {
 
   std::string act(const Element& action) override {
     DrawingServer* const server = server_.get();
-    if (!server) return {};
+    if (!server) return "expected a DrawingServer, found none: nothing is drawn";
     std::vector<Drawing> shapes;
     for (const Element e : action) {
-      if (!e.isList() || e.head() == "set") continue;
+      if (e.index() == (*action.begin()).index()) continue;
+      if (!e.isList()) return fmt::format("expected (set name) or a shape, found '{}'", e.text());
+      if (e.head() == "set") {
+        if (!e.at(1) || e.at(1).text().empty()) return "expected (set name), found a set without a name";
+        continue;
+      }
       if (shapes.size() == drawing::DrawBoard::kMaxShapes)
-        return fmt::format("(draw): expected at most {} shapes.", shapes.size());
-      if (std::string wrong = drawing::readShape(e, shapes.emplace_back()); !wrong.empty())
-        return fmt::format("(draw): {}.", wrong);
+        return fmt::format("expected at most {} shapes, found more", shapes.size());
+      if (std::string wrong = drawing::readShape(e, shapes.emplace_back()); !wrong.empty()) return wrong;
     }
     server->show(setOf(action), std::move(shapes));
     return {};

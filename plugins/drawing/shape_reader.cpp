@@ -55,9 +55,9 @@ class ShapeReader {
     Vec3f p = Vec3f::Zero();
     if (e.size() < static_cast<std::size_t>(count) + 1) return false;
     for (int i = 0; i < count; ++i) {
-      const double v = e.at(static_cast<std::size_t>(i) + 1).number();
-      if (!inRange(v)) return false;
-      p[i] = static_cast<float>(v);
+      const auto v = e.at(static_cast<std::size_t>(i) + 1).asNumber();
+      if (!v || !inRange(*v)) return false;
+      p[i] = static_cast<float>(*v);
     }
     out_.points.push_back(p);
     return true;
@@ -75,9 +75,9 @@ class ShapeReader {
   void number(const char* name, float& to, bool required) {
     const Element e = list_.named(name);
     if (!e) return required ? expect(fmt::format("({} number)", name)) : void();
-    const double v = e.at(1).number();
-    if (!(v >= 0) || !inRange(v)) return expect(fmt::format("({} number), not below 0", name));
-    to = static_cast<float>(v);
+    const auto v = e.at(1).asNumber();
+    if (!v || !(*v >= 0) || !inRange(*v)) return expect(fmt::format("({} number), not below 0", name));
+    to = static_cast<float>(*v);
   }
   void thickness() { number("thickness", out_.thickness, false); }
   void say(bool required) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/agents.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -9,11 +9,11 @@ class AgentSyncEffector : public Effector, public ISyncEffector {
   SPARK_CLASS(AgentSyncEffector, Effector)
  public:
   static void describe(Description<AgentSyncEffector>& d) {
-    d.doc("Accepts (syn), with which an agent ends its cycle in lockstep. Arguments are ignored.");
+    d.doc("Accepts (syn), with which an agent ends its cycle in lockstep.");
     d.implements<ISyncEffector>();
   }
   std::string predicate() const override { return "syn"; }
-  std::string act(const Element&) override { return {}; }
+  std::string act(const Element& action) override { return expectNoArguments(action); }
 };
 
 }  // namespace spark

@@ -19,7 +19,7 @@ class AngularMotorEffector : public Effector {
   }
   std::string act(const Element& action) override {
     IJoint* const motor = motor_.get();
-    if (!motor) return "there is no AngularMotor above it";
+    if (!motor) return "expected an AngularMotor above it, found none";
     NumberArguments read(action);
     double speed = 0;
     if (!read(0, speed)) return read.remark();

@@ -26,12 +26,13 @@ class ControlEffector : public Effector {
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
-    if (!joint) return "there is no joint above it";
+    if (!joint) return "expected a joint above it, found none";
     NumberArguments read(action);
     double n[5];
     for (std::size_t i = 0; i < 5; ++i)
       if (!read(i, n[i])) return read.remark();
-    if (n[2] < 0 || n[3] < 0) return "expected a stiffness and a damping of 0 or more";
+    if (n[2] < 0 || n[3] < 0)
+      return fmt::format("expected a stiffness and a damping of 0 or more, found {} and {}", n[2], n[3]);
     const double unit = joint->jointType() == engine::JointType::slider ? 1 : degToRad(1);
     joint->control(0, {.stiffness = gears_[0] * gears_[0] * n[2],
                        .damping = gears_[1] * gears_[1] * n[3],
@@ -75,7 +76,7 @@ class ActuatorEffector : public Effector {
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
-    if (!joint) return "there is no joint above it";
+    if (!joint) return "expected a joint above it, found none";
     NumberArguments read(action);
     if (double u = 0; read(0, u)) {
       control_ = u;

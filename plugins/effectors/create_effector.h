@@ -1,6 +1,6 @@
 #pragma once
 
-#include "api/agents.h"
+#include "api/joint_command.h"
 
 namespace spark {
 
@@ -9,16 +9,15 @@ class CreateEffector : public Effector {
   SPARK_CLASS(CreateEffector, Effector)
  public:
   static void describe(Description<CreateEffector>& d) {
-    d.doc(
-        "Imports a fixed scene file below the agent: (create). Arguments are ignored; without a file it has no "
-        "effect.");
+    d.doc("Imports a fixed scene file below the agent: (create). Without a file it has no effect.");
     d.property("scene", &CreateEffector::scene_).doc("The scene file to import.");
     d.on<&CreateEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "create"; }
-  std::string act(const Element&) override {
-    pending_ = !scene_.empty();
-    return {};
+  std::string act(const Element& action) override {
+    if (scene_.empty()) return "expected a file in its property scene, found none: nothing is created";
+    pending_ = true;
+    return expectNoArguments(action);
   }
 
  private:
@@ -30,7 +29,7 @@ class CreateEffector : public Effector {
     try {
       owner->importScene(scene_, {});
     } catch (const std::exception& e) {
-      kernel().log().warning("{}: could not build its agent: {}", path(), e.what());
+      refuse(0, [&] { return fmt::format("nothing is created: {}", e.what()); });
     }
   }
   std::string scene_;

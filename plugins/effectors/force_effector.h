@@ -22,6 +22,7 @@ class ForceEffector : public Effector {
     Vec3 force;
     for (int i = 0; i < 3; ++i)
       if (!read(i, force[i])) return read.remark();
+    if (!above_ && !beside_) return "expected a body above or beside it, found none";
     force_ = force;
     pending_ = true;
     return read.remark();

@@ -15,7 +15,7 @@ class Hinge2Effector : public Effector {
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
-    if (!joint) return "there is no Hinge2Joint above it";
+    if (!joint) return "expected a Hinge2Joint above it, found none";
     NumberArguments read(action);
     double speedDeg = 0;
     if (read(0, speedDeg)) joint->drive(1, degToRad(speedDeg));

@@ -21,7 +21,7 @@ class HingeEffector : public Effector, public IFreezable {
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
-    if (!joint) return "there is no HingeJoint above it";
+    if (!joint) return "expected a HingeJoint above it, found none";
     NumberArguments read(action);
     double speed = 0;
     if (read(0, speed)) {

@@ -13,7 +13,7 @@ class HMDPEffector : public Effector {
     d.doc("Accepted in scenes; the motor chip is not emulated, so (HMDP text) has no effect.");
   }
   std::string predicate() const override { return "HMDP"; }
-  std::string act(const Element&) override { return {}; }
+  std::string act(const Element&) override { return "the motor chip is not emulated: commands have no effect"; }
 };
 
 }  // namespace spark

@@ -19,7 +19,10 @@ class StiffnessEffector : public Effector {
     double stiffness = 0;
     if (!read(0, stiffness)) return read.remark();
     stiffness_ = std::clamp(stiffness, 0.0, 1.0);
-    if (motor_) motor_->setStiffness(stiffness_);
+    if (!motor_) return "expected an AngularMotor above it, found none";
+    motor_->setStiffness(stiffness_);
+    if (stiffness_ != stiffness)
+      return fmt::format("expected a stiffness of 0 to 1, found {}, which counts as {}", stiffness, stiffness_);
     return read.remark();
   }
 

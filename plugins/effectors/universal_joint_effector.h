@@ -16,7 +16,7 @@ class UniversalJointEffector : public Effector {
   }
   std::string act(const Element& action) override {
     IJoint* const joint = joint_.get();
-    if (!joint) return "there is no UniversalJoint above it";
+    if (!joint) return "expected a UniversalJoint above it, found none";
     NumberArguments read(action);
     double speed[2] = {0, 0};
     if (!read(0, speed[0]) || !read(1, speed[1])) return read.remark();

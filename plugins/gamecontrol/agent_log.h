@@ -18,12 +18,13 @@ class AgentLog {
 
   /// `log` must outlive it.
   explicit AgentLog(Log& log) : log_(&log) {}
-  /// Writes or drops a line.
-  void write(Level level, std::string_view line) {
-    if (!log_->enabled(level)) return;
-    if (!bucket_.take(Clock::now())) return void(++dropped_);
+  /// Writes or drops a line; false if it was dropped.
+  bool write(Level level, std::string_view line) {
+    if (!log_->enabled(level)) return true;
+    if (!bucket_.take(Clock::now())) return ++dropped_, false;
     if (dropped_ > 0) log_->warning("{} further lines about agents were dropped.", std::exchange(dropped_, 0));
     log_->write(level, line);
+    return true;
   }
 
  private:

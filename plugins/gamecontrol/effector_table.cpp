@@ -31,6 +31,12 @@ void EffectorTable::clear() {
   syncPredicate_.clear();
 }
 
+std::vector<std::string> EffectorTable::predicates() const {
+  std::vector<std::string> out;
+  for (const Entry& e : entries_) out.push_back(e.predicate);
+  return out;
+}
+
 bool EffectorTable::loading() const {
   return std::any_of(entries_.begin(), entries_.end(), [](const Entry& e) {
     const auto scene = e.effector ? e.effector->as<SceneEffector>() : nullptr;

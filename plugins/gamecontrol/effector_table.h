@@ -28,6 +28,8 @@ class EffectorTable {
   void clear();
   /// Predicate of the sync effector (ISyncEffector); "" if there is none.
   const std::string& syncPredicate() const { return syncPredicate_; }
+  /// All predicates, sorted.
+  std::vector<std::string> predicates() const;
   /// True while a SceneEffector waits to load the robot, or has loaded it in the last prepare phase after a wait.
   bool loading() const;
 

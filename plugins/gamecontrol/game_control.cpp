@@ -93,6 +93,7 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("messagesDropped", &GameControl::messagesDropped)
       .doc("Messages with percepts that were not sent because the client had not read earlier ones.");
   d.implements<IGameControl>();
+  d.implements<IRemarks>();
   d.implements<IConnectionConsumer>();
   d.implements<IInputGate>();
   d.on<&GameControl::act>(phase::kAct);
@@ -355,6 +356,12 @@ const GameControl::Participant* GameControl::participantOf(const AgentAspect& ag
   for (const auto& p : participants_)
     if (p->aspect() == &agent) return p.get();
   return nullptr;
+}
+
+bool GameControl::remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) {
+  for (const auto& p : participants_)
+    if (p->aspect() == &agent) return p->remark(agentLog(), cycle_, predicate, why);
+  return true;
 }
 
 const Predicates* GameControl::percepts(const AgentAspect& agent) const {

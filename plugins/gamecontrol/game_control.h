@@ -17,7 +17,7 @@ namespace spark {
 
 /// At /sys/server/gamecontrol. Its children are a parser, control aspects and perhaps a join policy. Simulation thread
 /// only; in the sense phase it distributes agents over the kernel's threads.
-class GameControl : public Node, public IGameControl, public IConnectionConsumer, public IInputGate {
+class GameControl : public Node, public IGameControl, public IRemarks, public IConnectionConsumer, public IInputGate {
   SPARK_CLASS(GameControl, Node)
  public:
   static void describe(Description<GameControl>& d);
@@ -27,6 +27,7 @@ class GameControl : public Node, public IGameControl, public IConnectionConsumer
   int agentsSeen() const override { return agentsSeen_; }
   const Predicates* percepts(const AgentAspect& agent) const override;
   double latency(const AgentAspect& agent) const override;
+  bool remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) override;
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
+#include "spark/error.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {
@@ -27,12 +28,37 @@ void Participant::join(int number, AgentAspect& aspect) {
   if (inside_) behavior()->start(actions_.pending());
 }
 
-void Participant::warn(AgentLog& log, std::int64_t cycle, std::string_view text) {
-  if (!lines_.take(cycle)) return;
+bool Participant::warn(AgentLog& log, std::int64_t cycle, std::uint64_t kind, std::string_view text) {
+  if (mistakes_.known(kind) || mistakes_.full()) return true;
+  if (!lines_.take(cycle)) return false;
   if (const auto n = lines_.takeDropped())
     log.write(Level::warning, fmt::format("{}: {} further lines were dropped.", label_, n));
-  log.write(Level::warning, fmt::format("{}: {}{}", label_, text.substr(0, kMaxLineLength),
-                                        text.size() > kMaxLineLength ? " ..." : ""));
+  if (!log.write(Level::warning, fmt::format("{}: {}{}", label_, text.substr(0, kMaxLineLength),
+                                             text.size() > kMaxLineLength ? " ..." : "")))
+    return false;
+  mistakes_.add(kind);
+  if (mistakes_.full())
+    log.write(Level::warning, fmt::format("{}: these were mistakes of {} kinds; no more of its mistakes are logged.",
+                                          label_, Mistakes::kMax));
+  return true;
+}
+
+bool Participant::remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why) {
+  const std::uint64_t kind = Mistakes::kindOf(predicate, why);
+  return mistakes_.known(kind) || warn(log, cycle, kind, fmt::format("{}: {}", predicate, why));
+}
+
+void Participant::warnUnknown(AgentLog& log, std::int64_t cycle, std::string_view predicate) {
+  constexpr std::size_t kMaxGuess = 40;  // bytes of a predicate for which a similar one is suggested
+  const std::uint64_t kind = Mistakes::kindOf(predicate, hasRobot_ ? "unknown" : "no robot");
+  if (mistakes_.known(kind)) return;
+  const std::string hint = !hasRobot_
+                               ? " It has no robot yet: expected (scene <file>), and the rest after its percepts."
+                           : predicate.size() <= kMaxGuess ? didYouMean(predicate, effectors_.predicates())
+                                                           : std::string();
+  warn(log, cycle, kind,
+       fmt::format("no effector registered for predicate {}{}.{}", predicate.substr(0, kMaxLineLength / 2),
+                   predicate.size() > kMaxLineLength / 2 ? " ..." : "", hint));
 }
 
 // ---- actions ----
@@ -58,7 +84,12 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
     warn(log, cycle,
          fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
   bool sync = false;
-  for (const Element e : actions) sync |= isSync(e.head());
+  for (const Element e : actions) {
+    if (!e.isList())
+      warn(log, cycle, fmt::format("expected (predicate arguments...), found '{}' outside of brackets.", e.text()));
+    else
+      sync |= isSync(e.head());
+  }
   lockstep_.onMessage(sync);
   actions_.endMessage(number_ == 0);
   return {};
@@ -78,13 +109,17 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
   EffectorTable::Lookup lookup(effectors_);
   NowRunning now("act");
   for (const Element action : actions_.pending()) {
+    if (!action.isList()) continue;
     const std::string_view head = action.head();
-    if (head.empty()) continue;
+    if (head.empty()) {
+      warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
+      continue;
+    }
     if (Effector* effector = lookup.find(head)) {
       now.at(effector);
       executeAction(*effector, action, log, cycle);
     } else if (hasRobot_ || head != kSync) {
-      warn(log, cycle, fmt::format("no effector registered for predicate {}.", head));
+      warnUnknown(log, cycle, head);
     }
   }
   actions_.executed();
@@ -92,7 +127,7 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle) {
   try {
-    if (const std::string why = effector.act(action); !why.empty()) warn(log, cycle, why);
+    if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();
     warn(log, cycle, fmt::format("{} ({}) threw: {}", effector.path(), effector.classObject()->name(), fault.what()));

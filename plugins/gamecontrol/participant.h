@@ -29,6 +29,7 @@
 #include "gamecontrol/latency_meter.h"
 #include "gamecontrol/line_budget.h"
 #include "gamecontrol/lockstep_record.h"
+#include "gamecontrol/mistakes.h"
 #include "gamecontrol/percept_buffer.h"
 #include "spark/state.h"
 
@@ -89,6 +90,9 @@ class Participant {
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
   /// Executes the pending actions.
   void execute(AgentLog& log, std::int64_t cycle);
+  /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
+  /// mistake. False if the line was dropped because there were too many.
+  bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
   /// Inside the host: the actions that followed from the last percepts become pending.
   void promote() {
     if (inside_) actions_.promote();
@@ -167,7 +171,12 @@ class Participant {
   /// The cycle count in the next sense phase.
   std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }
   void encode();
-  void warn(AgentLog& log, std::int64_t cycle, std::string_view text);
+  /// Logs a line about the agent, unless one of that kind was. False if it was dropped.
+  bool warn(AgentLog& log, std::int64_t cycle, std::uint64_t kind, std::string_view text);
+  bool warn(AgentLog& log, std::int64_t cycle, std::string_view text) {
+    return warn(log, cycle, Mistakes::kindOf({}, text), text);
+  }
+  void warnUnknown(AgentLog& log, std::int64_t cycle, std::string_view predicate);
 
   std::string label_;
   int number_ = 0;
@@ -188,7 +197,9 @@ class Participant {
   LatencyMeter latency_;
   Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
   Held held_;
-  LineBudget lines_{10};
+  static constexpr int kLines = 100;  ///< about one agent, in LineBudget::kWindow
+  LineBudget lines_{kLines};
+  Mistakes mistakes_;
 };
 
 }  // namespace spark::gamecontrol

@@ -26,15 +26,16 @@ class SceneEffector : public Effector {
   bool late() const { return late_; }
 
   std::string act(const Element& action) override {
-    if (loaded_) return "(scene ...): it has a robot already; a second one is refused.";
-    if (failures_ >= kMaxFailures)
-      return "(scene ...): no robot could be built too often; connect again to try once more.";
+    if (loaded_)
+      return "expected one robot, found a request for another: it has a robot already; a second one is refused.";
+    if (failures_ >= kMaxFailures) return "no robot could be built too often; connect again to try once more.";
     const Element file = action.at(1);
     if (!file || !file.isText() || file.text().empty())
-      return "(scene <file> <arguments>...): expected a file name after scene.";
-    if (file.text().size() > kMaxNameLength) return "(scene <file> ...): the file's name is too long.";
+      return "expected (scene <file> <arguments>...), found no file name after scene.";
+    if (file.text().size() > kMaxNameLength)
+      return fmt::format("expected a file name of at most {} bytes, found {}.", kMaxNameLength, file.text().size());
     if (!allowed(file.text()))
-      return fmt::format("(scene {}): robots are files below {}; others are refused.", file.text(), folder_);
+      return fmt::format("expected a file below {}, found '{}': others are refused.", folder_, file.text());
     file_ = file.text();
     arguments_.clear();
     for (auto it = ++ ++action.begin(); it != action.end(); ++it) arguments_.push_back(value(*it));

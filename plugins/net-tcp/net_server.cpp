@@ -13,6 +13,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 // Maximum time of one wait for input, so that a request to stop is seen.
 constexpr auto kMaxWait = std::chrono::milliseconds(25);
+// Without input for this time, what was received is acknowledged before the end of the cycle: in lockstep the client
+// that holds back its next bytes may be the one that the cycle waits for.
+constexpr auto kQuiet = std::chrono::milliseconds(10);
 }  // namespace
 
 NetServer::NetServer() = default;
@@ -22,6 +25,7 @@ void NetServer::describe(Description<NetServer>& d) {
   d.implements<IInputSource>();
   d.link(&NetServer::ports_, Below<TcpPort>());
   d.property("open", &NetServer::open_).doc("False: no port is opened.");
+  d.on<&NetServer::endCycle>(phase::kPublish);
   d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
 }
 
@@ -47,7 +51,12 @@ bool NetServer::pollPorts() {
   io_->poll();
   bool any = false;
   for (const Found<TcpPort>& port : ports_) any |= port->poll();
+  if (any) heardAt_ = Clock::now();
   return any;
+}
+
+void NetServer::acknowledge() {
+  for (const Found<TcpPort>& port : ports_) port->acknowledge();
 }
 
 bool NetServer::wait(double seconds) {
@@ -57,8 +66,10 @@ bool NetServer::wait(double seconds) {
     if (pollPorts() || kernel().stopRequested()) return true;
     const auto now = Clock::now();
     if (now >= end) return false;
+    const bool quiet = now - heardAt_ >= kQuiet;
+    if (quiet) acknowledge();
     // Sleep until a socket becomes ready or the timer expires.
-    timer_.expires_at(std::min(end, now + kMaxWait));
+    timer_.expires_at(std::min(end, quiet ? now + kMaxWait : heardAt_ + kQuiet));
     timer_.async_wait(net::MemoryHandler(timerMemory_, [](const boost::system::error_code&) {}));
     io_->restart();
     io_->run_one();

@@ -5,6 +5,7 @@
 #include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <memory>
 #include <vector>
 
@@ -36,6 +37,10 @@ class NetServer : public Node, public IInputSource {
 
  private:
   bool pollPorts();
+  /// At the end of a cycle, and when nothing arrives: input is acknowledged, so that no client waits with its next
+  /// bytes. In a cycle most input is acknowledged by output, at no cost.
+  void acknowledge();
+  void endCycle(const Event&) { acknowledge(); }
 
   std::shared_ptr<boost::asio::io_context> io_ = std::make_shared<boost::asio::io_context>(1);
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_->get_executor()};
@@ -43,6 +48,7 @@ class NetServer : public Node, public IInputSource {
   net::HandlerMemory timerMemory_;
   Links<TcpPort> ports_;
   bool open_ = true;
+  std::chrono::steady_clock::time_point heardAt_{};  ///< when a port last delivered something
 };
 
 }  // namespace spark

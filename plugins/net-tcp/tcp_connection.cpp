@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
+#include <utility>
 
 #include "net-tcp/tcp_port.h"
 
@@ -95,6 +96,7 @@ bool TcpConnection::flush() {
     error_code ec;
     const std::size_t n = socket_.write_some(boost::asio::buffer(out_.data() + written_, out_.size() - written_), ec);
     if (n > 0) {
+      markOutput();
       written_ += n;
       stalledSince_ = Clock::now();
     }
@@ -134,7 +136,28 @@ TcpConnection::Read TcpConnection::read(std::string& scratch) {
   }
   if (ec) return Read::ended;
   input_.append(scratch, 0, n);
+  if (std::exchange(unanswered_, true)) markPieces();
+  owesAck_ = true;
+  if (inPieces_) acknowledge();
   return n < scratch.size() ? Read::all : Read::some;
+}
+
+void TcpConnection::markPieces() {
+  inPieces_ = true;
+  regular_ = 0;
+}
+
+void TcpConnection::markOutput() {
+  unanswered_ = owesAck_ = false;
+  if (inPieces_ && ++regular_ >= kRegular) inPieces_ = false;
+}
+
+void TcpConnection::acknowledge() {
+  if (closing_ || !std::exchange(owesAck_, false)) return;
+  // The option is no mode: it acknowledges what was received until now, and later input is delayed again.
+  using QuickAck = boost::asio::detail::socket_option::boolean<IPPROTO_TCP, TCP_QUICKACK>;
+  error_code ignored;
+  socket_.set_option(QuickAck(true), ignored);
 }
 
 void TcpConnection::consume(std::size_t bytes) { input_.erase(0, bytes); }
@@ -142,6 +165,10 @@ void TcpConnection::consume(std::size_t bytes) { input_.erase(0, bytes); }
 void TcpConnection::markPartial(bool partial) {
   if (partial && !partial_) partialSince_ = Clock::now();
   partial_ = partial;
+  // The rest of the message may have to wait for the acknowledgement.
+  if (!partial) return;
+  markPieces();
+  acknowledge();
 }
 
 double TcpConnection::partialSeconds(Clock::time_point now) const {

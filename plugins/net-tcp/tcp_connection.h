@@ -56,6 +56,10 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   bool closing() const { return closing_; }
   /// Reads once, at most scratch.size() bytes, and appends them to input(). Does not block.
   Read read(std::string& scratch);
+  /// Acknowledges what was read, unless output has done so since. Without it the system waits up to 40 ms for output
+  /// that carries the acknowledgement, and a client with Nagle's algorithm, which is the default, holds back its next
+  /// bytes for as long.
+  void acknowledge();
   /// Received bytes that are not consumed yet.
   const std::string& input() const { return input_; }
   /// Removes bytes from the front of input().
@@ -72,6 +76,10 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
  private:
   void watchRead();
   void watchWrite();
+  /// Notes that input came in more than one piece since the last output.
+  void markPieces();
+  /// Notes that output was sent: it carries the acknowledgement.
+  void markOutput();
   /// Writes unsent output as far as the system takes it; false if the connection failed.
   bool flush();
 
@@ -86,6 +94,11 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   Clock::time_point heardAt_{};       ///< when it last completed a message while output was unsent
   Clock::time_point partialSince_{};  ///< when the incomplete message began
   bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false, spoken_ = false;
+  static constexpr int kRegular = 100;
+  bool unanswered_ = false;  ///< bytes were read, and nothing was sent since
+  bool owesAck_ = false;     ///< they are not acknowledged
+  bool inPieces_ = false;    ///< it sends more than one piece per output: each is acknowledged at once
+  int regular_ = 0;          ///< outputs since it last did; after kRegular it counts as a client that does not
 };
 
 }  // namespace spark::net

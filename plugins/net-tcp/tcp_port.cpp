@@ -172,6 +172,10 @@ bool TcpPort::poll() {
   return removeClosed() || any;
 }
 
+void TcpPort::acknowledge() {
+  for (auto& c : connections_) c->acknowledge();
+}
+
 bool TcpPort::acceptAll() {
   if (!acceptor_ || !*acceptReady_ || Clock::now() < acceptAgain_) return false;
   for (int i = 0; i < kAcceptsPerPoll; ++i) {

@@ -32,6 +32,8 @@ class TcpPort : public Node {
   /// Reads from all connections in the order in which they were accepted, then accepts new ones and reads from them. A
   /// connection delivers a bounded amount per call. True if something was delivered.
   bool poll();
+  /// Acknowledges what was read from connections that have got no output since. Costs nothing for all others.
+  void acknowledge();
 
   // For connections of this port.
 

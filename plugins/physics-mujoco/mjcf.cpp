@@ -118,7 +118,8 @@ Trees::Trees(const Model& model, const engine::State& state) {
   mergeConnectors(model);
 }
 
-/// A connector with one child, without geoms, on a joint with one axis: a body of MuJoCo may have several of those.
+/// A connector with one child that has its centre of mass, without geoms, on a joint with one axis: a body of MuJoCo
+/// may have several of those.
 void Trees::mergeConnectors(const Model& model) {
   const auto isMergeable = [&](const Link& link) {
     if (link.joint == kNone || !model.bodies[link.body].connector) return false;
@@ -134,6 +135,7 @@ void Trees::mergeConnectors(const Model& model) {
     Link& link = links[i];
     if (children[i] != 1 || links[child[i]].joint == kNone || !isMergeable(link)) continue;
     const Link& next = links[child[i]];
+    if (next.zero.position.norm() > 1e-9) continue;
     link.carrier = next.carrier == kNone ? child[i] : next.carrier;
     link.carrierInLink = next.carrier == kNone ? next.zero : compose(next.zero, next.carrierInLink);
   }
@@ -330,7 +332,8 @@ struct Writer {
   /// A link with its body, with the joints of the connectors before it, and all links below.
   void putLink(std::size_t index) {
     Pose zero;
-    double merged = 0;  // mass of the connectors
+    double mass = 0;  // of the connectors
+    Mat3 inertia = Mat3::Zero();
     const Index parent = trees.links[index].parent;
     std::vector<std::size_t> chain;
     for (;; index = children[index].front()) {
@@ -338,7 +341,10 @@ struct Writer {
       zero = compose(zero, before.zero);
       chain.push_back(index);
       if (before.carrier == kNone) break;
-      merged += model.bodies[before.body].mass;
+      const engine::Body& connector = model.bodies[before.body];
+      const Mat3& turn = before.carrierInLink.rotation;
+      mass += connector.mass;
+      inertia += turn.transpose() * connector.inertia * turn;
     }
     const Link& link = trees.links[index];
     const engine::Body& b = model.bodies[link.body];
@@ -348,8 +354,8 @@ struct Writer {
     putPose(place);
     put(">\n");
     // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
-    const auto [moments, axes] = principalAxes(b.inertia);
-    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass + merged, text(moments));
+    const auto [moments, axes] = principalAxes(b.inertia + inertia);
+    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass + mass, text(moments));
     putPose({-b.linkOrigin, axes});
     put("/>\n");
     for (const std::size_t i : chain) putJoint(trees.links[i]);

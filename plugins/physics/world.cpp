@@ -42,6 +42,8 @@ void World::describe(Description<World>& d) {
       .state()
       .doc("Constraint force mixing (compliance / time step) of all constraints.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
+  d.property("joinedCollide", &World::joinedCollide, &World::setJoinedCollide)
+      .doc("Bodies that joints connect collide with each other.");
   d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer)
       .unit("m")
       .min(0)

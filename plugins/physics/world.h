@@ -51,6 +51,8 @@ class World : public PhysicsObject {
   void setCfm(double v) { parameters_.cfm = v, apply(); }
   bool autoDisable() const { return parameters_.autoDisable; }
   void setAutoDisable(bool on) { parameters_.autoDisable = on, apply(); }
+  bool joinedCollide() const { return parameters_.joinedCollide; }
+  void setJoinedCollide(bool on) { parameters_.joinedCollide = on, apply(); }
   double surfaceLayer() const { return parameters_.contactSurfaceLayer; }
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
   double timestep() const { return parameters_.timestep; }

@@ -46,6 +46,7 @@ WorldModel::~WorldModel() {
 
 void WorldModel::setParameters(const engine::WorldParameters& p) {
   if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
+  if (p.joinedCollide != model_.parameters.joinedCollide) ++model_.structure;
   model_.parameters = p;
   model_.parameters.gravity = rounded(p.gravity);
   model_.parameters.cfm = rounded(p.cfm);

@@ -152,7 +152,8 @@ void Reader::flags(const Element& e) {
   const auto refuse = [&](const char* name, bool is, const char* value) {
     if (is) unsupported_.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
   };
-  for (const char* const name : {"filterparent", "refsafe", "nativeccd", "eulerdamp", "midphase"})
+  if (!on("filterparent")) set("joinedCollide", true);
+  for (const char* const name : {"refsafe", "nativeccd", "eulerdamp", "midphase"})
     refuse(name, !on(name), "disable");
   for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
     refuse(name, on(name, "disable"), "enable");

@@ -31,8 +31,14 @@ class BeamEffector : public Effector {
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* player = match_.player(*this);
-    if (!player || !match_.game()->paused()) return;
+    if (!player) return refuse(0, [&] { return match_.whyNoPlayer(); });
+    if (!match_.game()->paused())
+      return refuse(1, [&] {
+        return fmt::format("expected a mode before a kick-off or after a goal, found {}",
+                           playModeName(match_.game()->mode()));
+      });
     const SoccerSettings& s = *match_.settings();
+    remarkOnLimits(s);
     // In single precision, as in the installed base: the exact position decides the last digit of every later percept.
     const auto noise = [&](double width) { return static_cast<float>(width * random_.uniform(-1, 1)); };
     float x = x_ + noise(s.beamNoiseXY), y = y_ + noise(s.beamNoiseXY);
@@ -48,6 +54,16 @@ class BeamEffector : public Effector {
     const bool left = player->side() == soccer::Side::left;
     const float yaw = left ? angle - 90 : angle + 90, d = left ? 1 : -1;
     player->moveTo(Vec3(d * x, d * y, s.agentRadius), degToRad(yaw));
+  }
+
+  /// Logs a position that is clamped, apart from the noise.
+  void remarkOnLimits(const SoccerSettings& s) {
+    if (!s.startAnyFieldPosition && (x_ > 0 || x_ < static_cast<float>(-s.fieldLength / 2)))
+      refuse(2,
+             [&] { return fmt::format("expected x from {} to 0, found {}: it is clamped", -s.fieldLength / 2, x_); });
+    const double maxY = s.beamWithinFieldWidth ? s.fieldWidth / 2 : kMaxCoordinate;
+    if (std::abs(y_) > static_cast<float>(maxY))
+      refuse(3, [&] { return fmt::format("expected y from {} to {}, found {}: it is clamped", -maxY, maxY, y_); });
   }
 
   MatchLookup match_;
@@ -69,16 +85,17 @@ class SayEffector : public Effector {
   std::string predicate() const override { return "say"; }
   std::string act(const Element& action) override {
     const Element word = action.at(1);
-    if (!word || !word.isText()) return "expected one word, found none";
+    if (!word) return "expected one word, found none";
+    if (!word.isText()) return fmt::format("expected one word, found {}", word.isList() ? "a list" : "a number");
     const std::string_view text = word.text();
     if (text.empty()) return "expected one word, found an empty one";
     for (const unsigned char c : text)
       if (c < 0x21 || c > 0x7e || c == '(' || c == ')')
-        return fmt::format("byte {} is not allowed in a message", int(c));
-
-    // Too long messages are dropped without a remark, as in the installed base.
+        return fmt::format("expected printable characters without blanks and brackets, found byte {}", int(c));
     const soccer::Player* speaker = match_.player(*this);
-    if (!speaker || text.size() > std::size_t(match_.settings()->sayMsgSize)) return {};
+    if (!speaker) return match_.whyNoPlayer();
+    if (const auto most = std::size_t(match_.settings()->sayMsgSize); text.size() > most)
+      return fmt::format("expected at most {} bytes, found {}: nobody hears it", most, text.size());
     speaker->state->hearSelf(text);
     const Vec3 origin = speaker->position();
     for (const soccer::Player& hearer : match_.game()->pitch().players()) {
@@ -88,6 +105,7 @@ class SayEffector : public Effector {
       hearer.state->hear(hearer.side() == speaker->side(), speaker->state->team(),
                          radToDeg(std::atan2(offset.y(), offset.x())), text);
     }
+    if (action.at(2)) return fmt::format("expected one word, found {}: only the first is said", action.size() - 1);
     return {};
   }
 

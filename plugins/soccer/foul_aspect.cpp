@@ -3,7 +3,7 @@
 namespace spark {
 
 void FoulAspect::judge(const Event& event) {
-  if (!penalties_) return;
+  if (!penalties_) return idle();
   penalties_->follow(pitch());
   if (game().paused())
     reset();

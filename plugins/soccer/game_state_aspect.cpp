@@ -81,6 +81,7 @@ void GameStateAspect::setScores(int left, int right) {
 
 void GameStateAspect::rule(const Event& event) {
   modeLinesLeft_ = kModeLinesPerCycle;
+  advance_ = 0;
   soccer::Pitch& p = pitch();
   if (!p.ready()) return;
   advanceHalf();
@@ -91,10 +92,13 @@ void GameStateAspect::rule(const Event& event) {
 }
 
 void GameStateAspect::advanceClock(double step) {
-  if (clockRuns())
+  if (clockRuns()) {
+    const double before = time_;
     time_ = time_ < kSinglePrecisionUntil ? static_cast<float>(time_) + static_cast<float>(step) : time_ + step;
-  else if (mode_ == PlayMode::gameOver || !pitch_.gameControl()->agents().empty())
+    advance_ = time_ - before;
+  } else if (mode_ == PlayMode::gameOver || !pitch_.gameControl()->agents().empty()) {
     stoppedTime_ += step;
+  }
 }
 
 void GameStateAspect::advanceHalf() {

@@ -23,6 +23,8 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
 
   static void describe(Description<GameStateAspect>& d);
   void rule(const Event& event) override;
+  /// Disabled: the clock of play is stopped.
+  void rest(const Event&) override { advance_ = 0; }
   void agentLeaving(AgentAspect& agent) override;
   void report(std::vector<StatusEntry>& out) const override;
   std::string_view predicate() const override;
@@ -52,6 +54,9 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
     time_ = std::max(0.0, seconds);
     modeStart_ = std::min(modeStart_, time_);
   }
+  /// By how much the time of play has advanced in this cycle, as it is summed; 0 while it is stopped. A trainer that
+  /// sets the time does not change it [s].
+  double advance() const { return advance_; }
   /// 1 or 2.
   int half() const { return half_; }
   /// Number of times that the teams have swapped sides.
@@ -129,6 +134,7 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
   /// be wrong by per cents and stop in the end.
   static constexpr double kSinglePrecisionUntil = 4096;
   double time_ = 0, modeStart_ = 0;  ///< time of play [s]
+  double advance_ = 0;               ///< of the time of play in this cycle [s]
   double stoppedTime_ =
       0;  ///< time in this mode while the clock of play is stopped; before kick-offs with agents only [s]
   std::int64_t modeChanges_ = 0, sideSwaps_ = 0;

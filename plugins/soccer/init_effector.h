@@ -22,7 +22,7 @@ class InitEffector : public Effector {
     unum_ = name.number;
     team_ = name.team;
     pending_ = true;
-    return {};
+    return soccer::remarkOnInit(action);
   }
 
  protected:
@@ -37,18 +37,19 @@ class InitEffector : public Effector {
     AgentState* state = match_.state();
     AgentAspect* agent = match_.agent();
     if (!game || !state || !agent || !game->pitch().ready()) {
-      if (mayLog())
-        kernel().log().warning(
-            "{}: init refused: it needs an AgentState in the robot and soccer's rules below game control", path());
-      return;
+      return refuse(
+          0, [] { return "init refused: expected an AgentState in the robot and soccer's rules below game control"; });
     }
     const bool first = state->side() == soccer::Side::none;
     if (const std::string problem = join(*game, *state); !problem.empty()) {
-      if (mayLog() && game->mayLogJoin()) kernel().log().warning("{}: init refused: {}", agent->path(), problem);
+      // An agent may repeat it in every cycle.
+      if (std::exchange(lastProblem_, problem) != problem && mayLog() && game->mayLogJoin())
+        kernel().log().warning("agent {}: init refused: {}", agent->number(), problem);
     } else {
       if (mayLog() && game->mayLogJoin())
-        kernel().log().info("{}: plays for '{}' ({}) with number {}", agent->path(), team_,
+        kernel().log().info("agent {}: plays for '{}' ({}) with number {}", agent->number(), team_,
                             soccer::sideName(state->side()), state->unum());
+      lastProblem_.clear();
       setMaterials(*agent, state->side(), state->unum());
       if (auto* scene = game->pitch().scene()) scene->markModified();
     }
@@ -74,7 +75,8 @@ class InitEffector : public Effector {
   bool mayLog() {
     if (lines_ == kMaxLines) return false;
     if (++lines_ == kMaxLines)
-      kernel().log().warning("{}: it sends init again and again; what becomes of it is told no more", path());
+      kernel().log().warning("agent {}: it sends init again and again; the results are no longer logged",
+                             match_.agent()->number());
     return true;
   }
 
@@ -83,7 +85,7 @@ class InitEffector : public Effector {
   MatchLookup match_;
   int lines_ = 0;
   std::int64_t unum_ = 0;
-  std::string team_;
+  std::string team_, lastProblem_;
   bool pending_ = false;
 };
 

@@ -69,7 +69,16 @@ class KickEffector : public Effector {
     if (!pending_ && stepsLeft_ == 0) return;
     const soccer::Player* player = match_.player(*this);
     IRigidBody* ball = player ? match_.game()->pitch().ball() : nullptr;
-    if (std::exchange(pending_, false) && stepsLeft_ == 0 && ball) start(*player, *ball);
+    if (std::exchange(pending_, false)) {
+      if (!player)
+        refuse(0, [&] { return match_.whyNoPlayer(); });
+      else if (!ball)
+        refuse(1, [] { return "expected a ball, found none"; });
+      else if (stepsLeft_ > 0)
+        refuse(2, [&] { return fmt::format("expected no kick under way, found one for {} more steps", stepsLeft_); });
+      else
+        start(*player, *ball);
+    }
     if (stepsLeft_ == 0) return;
     --stepsLeft_;
     if (!ball) return;
@@ -85,7 +94,11 @@ class KickEffector : public Effector {
   void start(const soccer::Player& player, const IRigidBody& ball) {
     const SoccerSettings& s = *match_.settings();
     const Vec3 from = player.position(), offset = ball.state().position - from;
-    if (from.z() > s.agentRadius + 0.01 || offset.norm() > s.agentRadius + s.ballRadius + margin_) return;
+    if (from.z() > s.agentRadius + 0.01)
+      return refuse(3, [] { return "expected a player on the ground, found it in the air"; });
+    if (const double reach = s.agentRadius + s.ballRadius + margin_, distance = offset.norm(); distance > reach)
+      return refuse(
+          4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach, distance); });
     const double theta = std::atan2(offset.y(), offset.x()) + noise(sigmaTheta_);
     const double phi = degToRad(noisyElevation());
     const double power = std::clamp(power_, 1.0, maxPower_) + noise(sigmaForce_);

@@ -50,6 +50,15 @@ class MatchLookup {
     if (!player_) player_ = pitch.playerOf(&from);
     return player_ && player_->torso && player_->side() != soccer::Side::none ? player_ : nullptr;
   }
+  /// Why player() returned nullptr, for the log.
+  const char* whyNoPlayer() const {
+    if (!game_ || !settings_)
+      return "expected a match, found no SoccerSettings or no GameStateAspect below game control";
+    if (!player_ || !player_->state) return "expected a player, found a robot without an AgentState";
+    if (player_->side() == soccer::Side::none)
+      return "expected a player of a team, found none: it needs (init ...) first";
+    return "expected a player with a body, found none";
+  }
 
  private:
   TreeWatch tree_;

@@ -14,9 +14,9 @@ class PassEffector : public Effector {
     d.on<&PassEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "pass"; }
-  std::string act(const Element&) override {
+  std::string act(const Element& action) override {
     pending_ = true;
-    return {};
+    return expectNoArguments(action);
   }
 
  private:
@@ -24,7 +24,10 @@ class PassEffector : public Effector {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* player = match_.player(*this);
     PassModeRule* rule = player && match_.referee() ? match_.referee()->passMode() : nullptr;
-    if (rule) rule->request(*player);
+    if (!player) return refuse(0, [&] { return match_.whyNoPlayer(); });
+    if (!rule) return refuse(1, [] { return "expected a PassModeRule below the referee, found none"; });
+    const PassModeRule::Refusal why = rule->request(*player);
+    if (why != PassModeRule::Refusal::none) refuse(1 + static_cast<int>(why), [&] { return PassModeRule::text(why); });
   }
 
   MatchLookup match_;

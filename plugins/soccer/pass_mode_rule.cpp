@@ -66,30 +66,54 @@ double PassModeRule::scoreWait(Side side) const {
   return left > kRounding ? left : 0;
 }
 
-void PassModeRule::request(const soccer::Player& player) {
-  if (!enabled() || !referee().ready() || !mayPass(player)) return;
-  game().setMode(forSide(PlayMode::passLeft, player.side()));
+PassModeRule::Refusal PassModeRule::request(const soccer::Player& player) {
+  const Refusal why = enabled() && isLinked() && referee().ready() ? refusal(player) : Refusal::disabled;
+  if (why == Refusal::none) game().setMode(forSide(PlayMode::passLeft, player.side()));
+  return why;
 }
 
-bool PassModeRule::mayPass(const soccer::Player& player) const {
+std::string PassModeRule::text(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::none:
+      return {};
+    case Refusal::disabled:
+      return "expected an enabled PassModeRule, found a disabled one";
+    case Refusal::mode:
+      return "expected the mode PlayOn, found another";
+    case Refusal::tooSoon:
+      return "expected PassModeRetryWaitTime since the team's last pass mode, found less";
+    case Refusal::touched:
+      return "expected that no player of the team touches the ball, found one that does";
+    case Refusal::fast:
+      return "expected a ball of at most PassModeMaxBallSpeed, found a faster one";
+    case Refusal::far:
+      return "expected a player within PassModeMaxBallDist of the ball, also one cycle earlier, found it farther away";
+    case Refusal::opponents:
+      return "expected no opponent within PassModeMinOppBallDist of the ball, found one";
+  }
+  return {};
+}
+
+PassModeRule::Refusal PassModeRule::refusal(const soccer::Player& player) const {
   const SoccerSettings& s = settings();
   const Side mine = player.side();
-  if (game().mode() != PlayMode::playOn || pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding)
-    return false;
-  if (ball().touchedBy(mine) || pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return false;
+  if (game().mode() != PlayMode::playOn) return Refusal::mode;
+  if (pitch().now() - team(mine).lastActive < s.passModeRetryWaitTime - kRounding) return Refusal::tooSoon;
+  if (ball().touchedBy(mine)) return Refusal::touched;
+  if (pitch().ball()->state().linearVelocity.norm() > s.passModeMaxBallSpeed) return Refusal::fast;
   const Vec3 ballPosition = pitch().ballPosition();
   const auto distances = [&](const soccer::Player& p) {
     return std::pair(groundDistance(p.position(), ballPosition), team(p.side()).lastDistance(p.state->unum()));
   };
   const auto [distance, last] = distances(player);
-  if (distance > s.passModeMaxBallDist || last < 0 || last > s.passModeMaxBallDist) return false;
+  if (distance > s.passModeMaxBallDist || last < 0 || last > s.passModeMaxBallDist) return Refusal::far;
   for (const soccer::Player& p : pitch().players()) {
     if (p.side() != opponent(mine) || !p.torso) continue;
     const auto [opponents, opponentsLast] = distances(p);
     if (opponents < s.passModeMinOppBallDist || (opponentsLast >= 0 && opponentsLast < s.passModeMinOppBallDist))
-      return false;
+      return Refusal::opponents;
   }
-  return true;
+  return Refusal::none;
 }
 
 void PassModeRule::recordDistances() {

@@ -14,8 +14,13 @@ class PassModeRule : public SoccerRule {
  public:
   static void describe(Description<PassModeRule>& d);
 
-  /// Requests pass mode for a player's team. Ignored if a condition of mayPass() is not met.
-  void request(const soccer::Player& player);
+  /// Why a request for pass mode has no effect. The conditions are those of the installed base.
+  enum class Refusal { none, disabled, mode, tooSoon, touched, fast, far, opponents };
+  /// One line for the log.
+  static std::string text(Refusal refusal);
+
+  /// Requests pass mode for a player's team, and returns why it has no effect.
+  Refusal request(const soccer::Player& player);
   /// Time until goals of the team count again [s]; 0: they count.
   double scoreWait(Side side) const;
   /// Ends the bans of both teams, and the time between two pass modes.
@@ -51,7 +56,7 @@ class PassModeRule : public SoccerRule {
   /// The conditions of the installed base: PlayOn; PassModeRetryWaitTime since the team's last pass mode; the ball is
   /// slow and no player of the team touches it; in this cycle and the last the player is near the ball and no opponent
   /// is.
-  bool mayPass(const soccer::Player& player) const;
+  Refusal refusal(const soccer::Player& player) const;
   double waitLeft() const { return scoreWait(Side::left); }
   double waitRight() const { return scoreWait(Side::right); }
 

@@ -12,31 +12,36 @@ const std::string& partName(IRobotBox& box) {
   return part ? part->name() : box.leaf().name();
 }
 
-/// True when `since` is less than `seconds` ago. False for times in the future: a trainer may set the clock of play
-/// back.
-bool isWithin(double seconds, double since, double now) { return now >= since && now - since < seconds; }
-
 }  // namespace
 
-void SelfCollisionAspect::judgePlay(const Event&) {
+void SelfCollisionAspect::judgePlay(const Event& event) {
   lookUp();
-  const double now = game().time();
+  const double step = game().advance() > 0 ? game().advance() : event.step;
   for (std::size_t i = 0; i < robots_.size(); ++i) {
-    thaw(robots_[i], now);
-    if (isJudged(i)) judgeRobot(i, now);
+    advance(robots_[i], step);
+    if (isJudged(i)) judgeRobot(i);
   }
 }
 
 void SelfCollisionAspect::reset() {
   lookUp();
+  release();
+}
+
+void SelfCollisionAspect::release() {
   for (Robot& robot : robots_) {
     for (Joint& j : robot.joints) {
-      if (j.frozen) j.effector->freeze(false);
-      j.frozen = false;
-      j.frozenAt = kLongAgo;
+      thaw(j);
+      j.sinceFrozen = {};
     }
-    robot.sentOffAt = kLongAgo;
+    robot.sinceSentOff = {};
   }
+}
+
+void SelfCollisionAspect::thaw(Joint& joint) {
+  if (!joint.frozen || !joint.node) return;
+  joint.effector->freeze(false);
+  joint.frozen = false;
 }
 
 void SelfCollisionAspect::lookUp() {
@@ -62,7 +67,7 @@ SelfCollisionAspect::Robot SelfCollisionAspect::makeRobot(const soccer::Player& 
   robot.changedAt = player.changedAt;
   std::vector<IFreezable*> effectors;
   player.agent->collect(effectors);
-  for (IFreezable* e : effectors) robot.joints.push_back({e});
+  for (IFreezable* e : effectors) robot.joints.push_back({e, Ref<Leaf>(&e->leaf())});
   std::vector<IRobotBox*> boxes;
   player.agent->collect(boxes);
   for (IRobotBox* box : boxes) {
@@ -84,22 +89,22 @@ SelfCollisionAspect::Robot SelfCollisionAspect::makeRobot(const soccer::Player& 
 }
 
 void SelfCollisionAspect::copyTimes(const Robot& from, Robot& to) {
-  to.sentOffAt = from.sentOffAt;
+  to.sinceSentOff = from.sinceSentOff;
   for (std::size_t k = 0; k < std::min(from.joints.size(), to.joints.size()); ++k) {
     to.joints[k].frozen = from.joints[k].frozen;
-    to.joints[k].frozenAt = from.joints[k].frozenAt;
+    to.joints[k].sinceFrozen = from.joints[k].sinceFrozen;
   }
 }
 
-void SelfCollisionAspect::thaw(Robot& robot, double now) {
+void SelfCollisionAspect::advance(Robot& robot, double step) {
+  robot.sinceSentOff.advance(step);
   for (Joint& j : robot.joints) {
-    if (!j.frozen || isWithin(settings().selfCollisionJointFrozenTime, j.frozenAt, now)) continue;
-    j.effector->freeze(false);
-    j.frozen = false;
+    j.sinceFrozen.advance(step);
+    if (j.frozen && !j.sinceFrozen.isWithin(settings().selfCollisionJointFrozenTime)) thaw(j);
   }
 }
 
-void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
+void SelfCollisionAspect::judgeRobot(std::size_t player) {
   const SoccerSettings& s = settings();
   Robot& robot = robots_[player];
   for (Box& b : robot.boxes) b.current = soccer::SingleBox(b.box->pose(), b.half);
@@ -108,15 +113,15 @@ void SelfCollisionAspect::judgeRobot(std::size_t player, double now) {
     if (!overlap(robot, pair)) continue;
     const Box &a = robot.boxes[pair.a], &b = robot.boxes[pair.b];
     if (s.selfCollisionBeamPenalty) {
-      if (isWithin(s.selfCollisionBeamCooldownTime, robot.sentOffAt, now)) return;
-      robot.sentOffAt = now;
-      record(players()[player], a, b, now);
+      if (robot.sinceSentOff.isWithin(s.selfCollisionBeamCooldownTime)) return;
+      robot.sinceSentOff.start();
+      record(players()[player], a, b);
       if (s.foulOnSelfCollisions) sendOff(player, Foul::selfCollision);
       return;
     }
-    const bool frozeA = freeze(robot, a, now), frozeB = freeze(robot, b, now);
+    const bool frozeA = freeze(robot, a), frozeB = freeze(robot, b);
     if (!frozeA && !frozeB) continue;
-    record(players()[player], a, b, now);
+    record(players()[player], a, b);
     foul = true;
   }
   if (foul && s.foulOnSelfCollisions) penalties().report(players()[player], Foul::selfCollision);
@@ -128,14 +133,14 @@ bool SelfCollisionAspect::overlap(const Robot& robot, const Pair& pair) const {
   return soccer::overlapBeyond(static_cast<float>(settings().selfCollisionsTolerance), a, b);
 }
 
-bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
+bool SelfCollisionAspect::freeze(Robot& robot, const Box& box) {
   const SoccerSettings& s = settings();
   const double immunity = s.selfCollisionJointFrozenTime + s.selfCollisionJointThawTime;
   bool any = false;
   for (int k : box.joints) {
     Joint& joint = robot.joints[k];
-    if (isWithin(immunity, joint.frozenAt, now)) continue;
-    joint.frozenAt = now;
+    if (joint.sinceFrozen.isWithin(immunity)) continue;
+    joint.sinceFrozen.start();
     joint.frozen = s.foulOnSelfCollisions;
     if (joint.frozen) joint.effector->freeze(true);
     any = true;
@@ -143,23 +148,23 @@ bool SelfCollisionAspect::freeze(Robot& robot, const Box& box, double now) {
   return any;
 }
 
-void SelfCollisionAspect::record(const soccer::Player& player, const Box& a, const Box& b, double now) {
+void SelfCollisionAspect::record(const soccer::Player& player, const Box& a, const Box& b) {
   const SoccerSettings& s = settings();
   if (!s.printSelfCollisions && !s.writeSelfCollisionsToFile) return;
   const std::string line = fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(),
                                        partName(*a.box), partName(*b.box));
   if (s.printSelfCollisions) kernel().log().info("soccer: self-collision, {}", line);
   if (s.writeSelfCollisionsToFile)
-    std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", now, line);
+    std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", game().time(), line);
 }
 
 void SelfCollisionAspect::saveState(StateWriter& out) const {
   out.write(static_cast<std::int64_t>(robots_.size()));
   for (const Robot& r : robots_) {
     out.write(r.agent);
-    out.write(r.sentOffAt);
+    out.write(r.sinceSentOff.elapsed);
     out.write(static_cast<std::int64_t>(r.joints.size()));
-    for (const Joint& j : r.joints) out.write(j.frozen), out.write(j.frozenAt);
+    for (const Joint& j : r.joints) out.write(j.frozen), out.write(j.sinceFrozen.elapsed);
   }
 }
 
@@ -168,11 +173,11 @@ void SelfCollisionAspect::loadState(StateReader& in) {
   for (std::int64_t n = in.readInteger(); n > 0; --n) {
     Robot& r = robots_.emplace_back();
     r.agent = static_cast<int>(in.readInteger());
-    r.sentOffAt = in.readNumber();
+    r.sinceSentOff.elapsed = in.readNumber();
     for (std::int64_t k = in.readInteger(); k > 0; --k) {
-      Joint& j = r.joints.emplace_back(Joint{nullptr});
+      Joint& j = r.joints.emplace_back(Joint{nullptr, {}});
       j.frozen = in.readBool();
-      j.frozenAt = in.readNumber();
+      j.sinceFrozen.elapsed = in.readNumber();
     }
   }
   tree_.lookAgain();

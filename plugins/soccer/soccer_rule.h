@@ -19,18 +19,17 @@ class SoccerRule : public ControlAspect {
     d.link(&SoccerRule::above_, Above<SoccerRuleAspect>());
     d.link(&SoccerRule::beside_, Beside<SoccerRuleAspect>());
   }
-  void rule(const Event& event) final {
-    if (findReferee() && referee_->ready()) judge(event);
-  }
-  void rest(const Event&) final {
-    if (findReferee() && referee_->ready()) skip();
-  }
+  void rule(const Event& event) final { findReferee() && referee_->ready() ? judge(event) : idle(); }
+  void rest(const Event&) final { findReferee() && referee_->ready() ? skip() : idle(); }
 
  protected:
   /// Judges a cycle. Only here and in skip() may the accessors below be called.
   virtual void judge(const Event& event) = 0;
   /// Called instead of judge() while the rule is disabled.
   virtual void skip() {}
+  /// Called instead of judge() and skip() while there is no match to judge, for instance because the referee is
+  /// disabled. None of the accessors below may be called.
+  virtual void idle() {}
 
   SoccerRuleAspect& referee() const { return *referee_; }
   GameStateAspect& game() const { return referee_->game(); }

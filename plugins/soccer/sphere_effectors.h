@@ -50,8 +50,12 @@ class DriveEffector : public Effector {
   void prepare(const Event& event) {
     if (force_.isZero()) return;
     const soccer::Player* player = match_.player(*this);
-    if (!player || player->position().z() > match_.settings()->agentRadius + 0.001) return;
-    if (!player->state->drain(force_.norm() * consumption_ * event.step)) return;
+    if (!player) return refuse(0, [&] { return match_.whyNoPlayer(); });
+    if (player->position().z() > match_.settings()->agentRadius + 0.001) return;
+    if (!player->state->drain(force_.norm() * consumption_ * event.step))
+      return refuse(1, [&] {
+        return fmt::format("expected a battery with enough energy, found {:.2f} % left", player->state->battery());
+      });
     const double d = direction(player->side());
     player->torso->enable();
     player->torso->addForce(Vec3(d * force_.x(), d * force_.y(), force_.z()));
@@ -76,9 +80,9 @@ class CatchEffector : public Effector {
     d.on<&CatchEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "catch"; }
-  std::string act(const Element&) override {
+  std::string act(const Element& action) override {
     pending_ = true;
-    return {};
+    return expectNoArguments(action);
   }
 
  private:
@@ -87,12 +91,19 @@ class CatchEffector : public Effector {
   void prepare(const Event&) {
     if (!std::exchange(pending_, false)) return;
     const soccer::Player* goalie = match_.player(*this);
-    if (!goalie || goalie->state->unum() != 1) return;
+    if (!goalie) return refuse(0, [&] { return match_.whyNoPlayer(); });
+    if (const int unum = goalie->state->unum(); unum != 1)
+      return refuse(1, [&] { return fmt::format("expected the goalie, number 1, found number {}", unum); });
     const soccer::Pitch& pitch = match_.game()->pitch();
     const SoccerSettings& s = pitch.settings();
     const Vec3 from = goalie->position(), ball = pitch.ballPosition();
-    if (!pitch.ball() || !pitch.penaltyArea(goalie->side()).contains(ball.x(), ball.y())) return;
-    if (from.z() > s.agentRadius + 0.01 || (ball - from).norm() > s.agentRadius + s.ballRadius + margin_) return;
+    if (!pitch.ball() || !pitch.penaltyArea(goalie->side()).contains(ball.x(), ball.y()))
+      return refuse(2, [] { return "expected the ball in the own penalty area, found it elsewhere"; });
+    if (from.z() > s.agentRadius + 0.01)
+      return refuse(3, [] { return "expected the goalie on the ground, found it in the air"; });
+    if (const double reach = s.agentRadius + s.ballRadius + margin_, distance = (ball - from).norm(); distance > reach)
+      return refuse(
+          4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach, distance); });
 
     // Players near the new position of the ball are moved away.
     const Vec3 target = from + Vec3(direction(goalie->side()) * (s.agentRadius + s.ballRadius + kGap), 0, 0);
@@ -136,7 +147,7 @@ class PanTiltEffector : public Effector {
     if (!std::exchange(pending_, false)) return;
     match_.refresh(*this);
     AgentState* state = match_.state();
-    if (!state) return;
+    if (!state) return refuse(0, [] { return "expected a player, found a robot without an AgentState"; });
 
     // The ranges are those of the robot's cone vision; without one the installed base's defaults.
     std::array<int, 2> pan{-90, 90}, tilt{-20, 20};

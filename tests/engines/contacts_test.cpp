@@ -1,3 +1,5 @@
+#include <set>
+
 #include "engine_world.h"
 
 // Contacts, in each engine.
@@ -127,4 +129,44 @@ TEST_CASE("contact forces are measured also if the state of a body was set befor
     CHECK(sum == Approx(3 * 9.81).epsilon(0.02));
     CHECK(w.position(b).z() == Approx(0.2).margin(0.01));
   });
+}
+
+TEST_CASE(
+    "bodies that a joint connects do not collide, through connectors neither, but with the static world they do") {
+  // Spheres of radius 0.2 that overlap: a at the origin, b beside it, a connector between them, and a static one.
+  const auto pairs = [](EngineWorld& w) {
+    w.detect();
+    std::set<std::pair<bool, bool>> found;
+    for (const engine::Contact& c : w.contacts) found.insert({c.bodyA != engine::kNone, c.bodyB != engine::kNone});
+    return std::pair{found.count({true, true}) > 0, found.count({true, false}) > 0};
+  };
+  for (const bool between : {false, true})
+    withEngines(
+        [&](EngineWorld& w) {
+          CAPTURE(between);
+          w.setGravity(0);
+          const BodyHandle a = w.sphere({0, 0, 0}, 0.2), b = w.sphere({0.3, 0, 0}, 0.2);
+          w.geom({.shape = Shape::sphere, .radius = 0.2}, BodyHandle::none, {{0, 0.3, 0}, Mat3::Identity()});
+          CHECK(pairs(w) == std::pair{true, true});
+          JointHandle last;
+          if (between) {
+            const BodyHandle c = w.body({0.3, 0, 0}, 0.01, Mat3::Identity() * 1e-4);
+            w.world.setConnector(c, true);
+            w.joint(JointType::hinge, c, a, {0.15, 0, 0}, Vec3::UnitY());
+            last = w.joint(JointType::hinge, b, c, {0.15, 0, 0}, Vec3::UnitZ());
+          } else {
+            last = w.joint(JointType::hinge, b, a, {0.15, 0, 0});
+          }
+          w.joint(JointType::hinge, a, BodyHandle::none, {0, 0, 0});
+          CHECK(pairs(w) == std::pair{false, true});
+          engine::WorldParameters p = w.world.model().parameters;
+          p.joinedCollide = true;
+          w.world.setParameters(p);
+          CHECK(pairs(w) == std::pair{true, true});
+          p.joinedCollide = false;
+          w.world.setParameters(p);
+          w.world.destroyJoint(last);
+          CHECK(pairs(w) == std::pair{true, true});
+        },
+        {&EngineKind::joints});
 }

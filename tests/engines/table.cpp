@@ -167,5 +167,30 @@ TEST_CASE("the table of engines", "[.table]") {
              &EngineKind::joints)
       << number("penetration of the lowest of ten boxes into the ground [mm]", "{:.2f}",
                 [](EngineWorld& w) { return 1e3 * penetration(w); })
-      << costs;
+      << costs << R"(
+## Turns
+
+The angle of a hinge, of both axes of a universal joint and of hinge2, and of the outer axes of an Euler motor is
+continuous: a hinge that has turned once is at 360 degrees. Stops, controllers, springs, `getAngle`, percepts and what
+is saved use the same number with every engine, and it survives when the engine is replaced or the world changes. The
+plugin `physics` counts turns after each step of the engine: an angle that jumps by more than half a turn has passed
+180 degrees. So a stop holds at any angle and at any speed at which one step does not pass the stop whole; with half a
+turn a step or more the count is wrong. A pose that is set changes an angle by at most half a turn.
+
+With `exactReplay` the perceptors of joints of the installed base (HingePerceptor, UniversalJointPerceptor,
+Hinge2Perceptor, AngularMotorPerceptor) print the angle within one turn, as rcssserver3d does; all else stays continuous.
+
+## Who collides
+
+| two colliders | collide |
+|---|---|
+| of one body | no |
+| of two bodies that a joint connects | no |
+| of two bodies that joints connect through connectors: a body of MJCF with several joints, and its parent | no |
+| of a body and the static world, also where a joint connects the body to it | yes |
+| of two bodies that a chain of joints connects, with other bodies between them | yes |
+| of two bodies with `World.joinedCollide` (MJCF: `filterparent="disable"`) | yes |
+
+Spaces, collision groups and `contactTypes` are asked besides.
+)";
 }

@@ -61,7 +61,7 @@ class TestMotor : public Effector {
  public:
   static void describe(Description<TestMotor>& d) { d.doc("Notes its commands."); }
   std::string act(const Element& action) override {
-    if (!action.at(1)) return "(" + name() + " <value>): expected a number.";
+    if (!action.at(1)) return "expected a number, found none";
     actionLog().push_back(fmt::format("{} {} {}", agent()->outermost().number(), name(), action.at(1).number()));
     return {};
   }
@@ -156,10 +156,24 @@ class Client {
   /// Sends a message with its length prefix.
   void send(std::string_view message) {
     const auto n = htonl(static_cast<std::uint32_t>(message.size()));
-    raw(std::string(reinterpret_cast<const char*>(&n), 4) + std::string(message));
+    std::string bytes(reinterpret_cast<const char*>(&n), 4);
+    bytes += message;
+    raw(bytes);
+  }
+  /// Sends a message in two writes: its length prefix, then the rest.
+  void sendInTwoWrites(std::string_view message) {
+    const auto n = htonl(static_cast<std::uint32_t>(message.size()));
+    raw({reinterpret_cast<const char*>(&n), 4});
+    raw(message);
   }
   /// Sends raw bytes. Polls the server when it has to make room. Stops when the server has closed the connection.
   void raw(std::string_view bytes);
+  /// Switches Nagle's algorithm on, as it is for sockets by default: while sent bytes are not acknowledged, small
+  /// writes wait in the client.
+  void useNagle() const {
+    const int off = 0;
+    ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &off, sizeof off);
+  }
   /// Returns when all sent bytes have arrived, so that the server's next poll reads them.
   void arrive() const;
   /// The next message; polls the server until it arrives. Empty if the connection was closed.
@@ -207,6 +221,7 @@ class Arena {
     events.define(phase::kAct, Order::parentsFirst, "act");
     events.define(phase::kPrepare, Order::childrenFirst, "prepare");
     events.define(phase::kSense, Order::parentsFirst, "sense");
+    events.define(phase::kPublish, Order::parentsFirst, "publish");
     kernel.create("TestScenes", "/sys/server/scene");
     kernel.create("Node", "/usr/scene");
     Leaf& server = kernel.create("GameControl", "/sys/server/gamecontrol");
@@ -274,6 +289,7 @@ class Arena {
     emit(phase::kPrepare, event);
     event.time += event.step;
     emit(phase::kSense, event);
+    emit(phase::kPublish, event);
   }
   void emit(ChannelName channel, Event& event) {
     event.name = channel;

@@ -12,7 +12,36 @@ TEST_CASE("Invalid actions do not affect the valid ones") {
   applyActions(a, 3);
   REQUIRE(actionLog() == ActionLog{"1 he1 nan", "1 he1 0", "1 he1 3"});
   REQUIRE(a.logged("no effector registered for predicate nonsense"));
-  REQUIRE(a.logged("agent 1 (" + c.name() + "): (he1 <value>): expected a number."));
+  const std::string agent = "agent 1 (" + c.name() + "): ";
+  REQUIRE(a.logged(agent + "he1: expected a number, found none"));
+  REQUIRE(a.logged(agent + "expected (predicate arguments...), found 'atom' outside of brackets."));
+  REQUIRE(a.logged(agent + "expected (predicate arguments...), found a list that does not begin with a word."));
+}
+
+TEST_CASE("Each kind of mistake of an agent is logged once, and again for another agent") {
+  Arena a;
+  Client one = robot(a), two = robot(a);
+  const auto lines = [&](const std::string& text) {
+    int n = 0;
+    for (auto at = a.host.text.find(text); at != std::string::npos; at = a.host.text.find(text, at + 1)) ++n;
+    return n;
+  };
+  for (int i = 0; i < 20; ++i) {
+    for (Client* c : {&one, &two})
+      c->send("(he1)(he3 " + std::to_string(i) + ")(he2)x" + std::to_string(i) + " (scene robot)");
+    one.arrive();
+    two.arrive();
+    a.cycle();
+    one.drain(), two.drain();
+  }
+  for (const std::string& agent : {"agent 1 (" + one.name() + "): ", "agent 2 (" + two.name() + "): "}) {
+    CHECK(lines(agent) == 5);
+    CHECK(lines(agent + "he1: expected a number, found none") == 1);
+    CHECK(lines(agent + "he2: expected a number, found none") == 1);
+    CHECK(lines(agent + "no effector registered for predicate he3. Did you mean 'he1' or 'he2'?") == 1);
+    CHECK(lines(agent + "expected (predicate arguments...), found 'x0' outside of brackets.") == 1);
+    CHECK(lines(agent + "scene: expected one robot, found a request for another") == 1);
+  }
 }
 
 TEST_CASE("A message with an error is applied up to the error, and the connection stays open") {
@@ -43,14 +72,26 @@ TEST_CASE("200,000 nested parentheses over several messages close at most that c
 TEST_CASE("The number of log lines about one agent is limited") {
   Arena a;
   Client c = robot(a);
-  std::string flood;
-  for (int i = 0; i < 5000; ++i) flood += "(bad 1)";
-  c.send(flood + "(he1 1)");
-  applyActions(a, 1);
-  std::size_t lines = 0;
-  for (std::size_t at = 0; (at = a.host.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
-  REQUIRE(lines >= 1);
-  REQUIRE(lines <= 10);
+  const auto flood = [&](int seed) {
+    std::string message;
+    for (int i = 0; i < 5000; ++i) message += fmt::format("(bad{} 1)", seed + i);
+    c.send(message + "(he1 1)");
+    actionLog().clear();
+    applyActions(a, 1);
+    std::size_t lines = 0;
+    for (std::size_t at = 0; (at = a.host.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
+    return lines;
+  };
+  const auto pause = [&] {
+    for (int i = 0; i < 100; ++i) a.cycle(), c.drain();
+  };
+  REQUIRE(flood(0) == 100);
+  REQUIRE(flood(5000) == 100);
+  pause();
+  REQUIRE(flood(10000) == 200);
+  REQUIRE(a.logged("these were mistakes of 200 kinds; no more of its mistakes are logged."));
+  pause();
+  REQUIRE(flood(15000) == 200);
 }
 
 TEST_CASE("A scene that cannot be loaded leaves the agent without a robot, and the log says why") {

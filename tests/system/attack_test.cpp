@@ -69,7 +69,7 @@ TEST_CASE("A scene path that is missing, a folder, absolute or leads upwards is 
       {"rsg/agent/none.rsg", "no resource 'rsg/agent/none.rsg'"},
       {"rsg/agent", "found a folder"},
       {"rsg/agent/", "found a folder"},
-      {"rsg/soccer/field.rsg", "robots are files below rsg/agent/"},
+      {"rsg/soccer/field.rsg", "expected a file below rsg/agent/"},
       {"/etc/passwd", "it is absolute"},
       {"rsg/../../../../etc/passwd", "'..'"}};
   for (const auto& [scene, complaint] : scenes) {

@@ -197,5 +197,19 @@ TEST_CASE("drawing() in a config opens a port only if one is set, and in a batch
 TEST_CASE("an agent may draw without a drawing server") {
   Artist artist;
   artist.kernel.root().require<Node>("/sys/server").remove(*artist.node);
-  CHECK(artist.draw("(draw (point (at 1 2 0)))").empty());
+  CHECK(artist.draw("(draw (point (at 1 2 0)))") == "expected a DrawingServer, found none: nothing is drawn");
+}
+
+TEST_CASE("what an agent draws wrong is reported, and nothing of it is drawn") {
+  Artist artist;
+  const auto [action, expected] = GENERATE(table<std::string, std::string>(
+      {{"(draw (point (at 1 2)))", "expected (at x y z) with numbers"},
+       {"(draw (point (at 1 2 z)))", "expected (at x y z) with numbers"},
+       {"(draw (circle (at 1 2)(radius big)))", "expected (radius number), not below 0"},
+       {"(draw (set a)(cube (at 1 2 3)))",
+        "expected a circle, line, point, sphere, polygon, text or agent, found 'cube'"},
+       {"(draw (set))", "expected (set name), found a set without a name"},
+       {"(draw something)", "expected (set name) or a shape, found 'something'"}}));
+  CHECK_THAT(artist.draw(action), Catch::StartsWith(expected));
+  CHECK(artist.server->sets().empty());
 }

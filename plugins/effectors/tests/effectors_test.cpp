@@ -45,7 +45,7 @@ TEST_CASE("a command sets the speed of a hinge at once, limited to its maximum s
   robot.joint->maxSpeeds[0] = 6.1395;
   CHECK(robot.act(he1, "(he1 99)").empty());
   CHECK(robot.joint->velocity(0) == 6.1395);
-  CHECK(robot.act(he1, "(he1 -99 surplus)").empty());
+  CHECK(robot.act(he1, "(he1 -99 surplus)") == "expected 1 argument, found 2: the others are ignored");
   CHECK(robot.joint->velocity(0) == -6.1395);
   CHECK(robot.act(he1, "(he1 2e-1)").empty());
   CHECK(robot.joint->velocity(0) == 0.2);
@@ -178,7 +178,7 @@ TEST_CASE("effectors of other joints have their own units and limits") {
     motor.device.disabled = true;
     CHECK(robot.act(effector, "(he1 1)").empty());
     CHECK(motor.velocity(0) == 0);
-    CHECK(robot.act(stiffness, "(he1s 1.5)").empty());
+    CHECK(robot.act(stiffness, "(he1s 1.5)") == "expected a stiffness of 0 to 1, found 1.5, which counts as 1");
     CHECK(motor.device.stiffness == 1);
     CHECK(robot.act(stiffness, "(he1s 0.25)").empty());
     CHECK(motor.device.stiffness == 0.25);
@@ -201,7 +201,7 @@ TEST_CASE("a control effector sets the controller of its joint") {
     CHECK(law.force == 1.5);
     CHECK(std::isinf(law.maxForce));
     setProperty(effector, "maxForce", 12.0);
-    CHECK(robot.act(effector, "(he1 0 0 0 0 -2 surplus)").empty());
+    CHECK(robot.act(effector, "(he1 0 0 0 0 -2 surplus)") == "expected 5 arguments, found 6: the others are ignored");
     CHECK(law.stiffness == 0);
     CHECK(law.force == -2);
     CHECK(law.maxForce == 12);
@@ -225,8 +225,8 @@ TEST_CASE("invalid commands of a control effector are refused and change nothing
       {"(he1 1 (2) 3 4 5)", "expected a number as argument 2, found a list"},
       {"(he1 1 2 nan 4 5)", "expected a finite number as argument 3, found nan"},
       {"(he1 1 2 3 4 -inf)", "expected a finite number as argument 5, found -inf"},
-      {"(he1 1 2 -3 4 5)", "expected a stiffness and a damping of 0 or more"},
-      {"(he1 1 2 3 -4 5)", "expected a stiffness and a damping of 0 or more"},
+      {"(he1 1 2 -3 4 5)", "expected a stiffness and a damping of 0 or more, found -3 and 4"},
+      {"(he1 1 2 3 -4 5)", "expected a stiffness and a damping of 0 or more, found 3 and -4"},
   };
   for (const auto& [command, remark] : cases) {
     CHECK(robot.act(he1, command) == remark);
@@ -257,7 +257,7 @@ TEST_CASE("an actuator's control sets a force in addition to its spring and damp
                                 {"least", -1.0},
                                 {"most", 2.0}})
     setProperty(turn, name, v);
-  CHECK(robot.act(turn, "(turn 1.5 surplus)").empty());
+  CHECK(robot.act(turn, "(turn 1.5 surplus)") == "expected 1 argument, found 2: the others are ignored");
   CHECK(law.force == 3 * 1.5 + 0.5);
   CHECK(law.stiffness == 40);
   CHECK(law.damping == 4);
@@ -337,14 +337,53 @@ TEST_CASE("invalid commands of an actuator are refused and change nothing") {
   CHECK(law.force == 0);
 }
 
+TEST_CASE("every effector reports arguments that are missing, of another type or superfluous") {
+  struct Case {
+    engine::JointType above;
+    const char *className, *right;  ///< the arguments of a command without a remark
+  };
+  using engine::JointType;
+  const Case c = GENERATE(
+      Case{JointType::hinge, "HingeEffector", "1"}, Case{JointType::universal, "UniversalJointEffector", "1 2"},
+      Case{JointType::hinge2, "Hinge2Effector", "1"}, Case{JointType::angularMotor, "AngularMotorEffector", "1"},
+      Case{JointType::hinge, "ControlEffector", "1 2 3 4 5"}, Case{JointType::hinge, "ActuatorEffector", "1"},
+      Case{JointType::hinge, "ForceEffector", "1 2 3"}, Case{JointType::hinge, "AgentSyncEffector", ""});
+  CAPTURE(c.className);
+  Robot robot;
+  Effector& effector = std::string(c.className) == "ForceEffector" ? robot.body->create<Effector>(c.className, "x")
+                                                                   : robot.add(c.above, c.className, "x");
+  const std::string right = c.right;
+  const auto remark = [&](const std::string& arguments) { return robot.act(effector, "(x " + arguments + ")"); };
+  CHECK(remark(right).empty());
+  const auto count = (right.size() + 1) / 2;
+  CHECK_THAT(remark(right + " 9"), Catch::StartsWith("expected " + (count == 0 ? "no" : std::to_string(count))));
+  CHECK_THAT(remark(right + " 9"), Catch::Contains("found " + std::to_string(count + 1)));
+  if (count == 0) return;
+  const std::string most = right.substr(0, right.size() - 1), last = std::to_string(count);
+  CHECK(remark(most) == "expected a number as argument " + last + ", found none");
+  CHECK(remark(most + "(1)") == "expected a number as argument " + last + ", found a list");
+  CHECK(remark(most + "nan") == "expected a finite number as argument " + last + ", found nan");
+  CHECK(remark(most + "a1") == "expected a number as argument " + last + ", found 'a1', which counts as 0");
+}
+
+TEST_CASE("commands that an effector accepts for compatibility, or cannot carry out, are reported") {
+  Robot robot;
+  CHECK(robot.act(robot.transform->create<Effector>("HMDPEffector", "chip"), "(HMDP x)") ==
+        "the motor chip is not emulated: commands have no effect");
+  CHECK(robot.act(robot.transform->create<Effector>("CreateEffector", "c"), "(create)") ==
+        "expected a file in its property scene, found none: nothing is created");
+  Effector& lost = robot.kernel.create<Effector>("ForceEffector", "/usr/lost");
+  CHECK(robot.act(lost, "(force 1 2 3)") == "expected a body above or beside it, found none");
+}
+
 TEST_CASE("an effector without its joint reports this") {
   Robot robot;
   auto& lost = robot.transform->create<Effector>("HingeEffector", "lost");
-  CHECK(robot.act(lost, "(lost 1)") == "there is no HingeJoint above it");
+  CHECK(robot.act(lost, "(lost 1)") == "expected a HingeJoint above it, found none");
   CHECK(robot.text.find("/usr/robot/lost: expected a HingeJoint above it, found none") != std::string::npos);
   for (const char* className : {"ControlEffector", "ActuatorEffector"})
     CHECK(robot.act(robot.transform->create<Effector>(className, className), "(x 1 2 3 4 5)") ==
-          "there is no joint above it");
+          "expected a joint above it, found none");
 }
 
 TEST_CASE("only the last force command of a cycle acts, once in the prepare phase") {
@@ -368,14 +407,11 @@ TEST_CASE("some effectors have a fixed predicate, and the one for syn is an ISyn
   auto& syn = robot.transform->create<Effector>("AgentSyncEffector", "s");
   CHECK(syn.predicate() == "syn");
   CHECK(syn.as<ISyncEffector>() != nullptr);
-  CHECK(robot.act(syn, "(syn 1 2 3)").empty());
+  CHECK(robot.act(syn, "(syn 1 2 3)") == "expected no arguments, found 3: they are ignored");
   auto& chip = robot.transform->create<Effector>("HMDPEffector", "h");
   CHECK(chip.predicate() == "HMDP");
-  CHECK(robot.act(chip, "(HMDP x)").empty());
   auto& create = robot.transform->create<Effector>("CreateEffector", "c");
   CHECK(create.predicate() == "create");
-  CHECK(robot.act(create, "(create ignored)").empty());
-  robot.prepare();
 }
 
 TEST_CASE("create tries to build its scene once, and a failure is logged") {
@@ -385,7 +421,7 @@ TEST_CASE("create tries to build its scene once, and a failure is logged") {
   setProperty(create, "scene", "rsg/robot.rsg");
   CHECK(robot.act(create, "(create)").empty());
   robot.prepare();
-  CHECK(robot.text.find("/usr/agent1/c: could not build its agent") != std::string::npos);
+  CHECK(robot.text.find("/usr/agent1/c: nothing is created: ") != std::string::npos);
   robot.text.clear();
   robot.prepare();
   CHECK(robot.text.empty());

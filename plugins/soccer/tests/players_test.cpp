@@ -80,7 +80,7 @@ TEST_CASE("an agent that sends init in every cycle does not fill the log", "[soc
                      : "(init (unum 3)(teamname A))");
     h.run(1);
   }
-  CHECK(h.text.find("told no more") != std::string::npos);
+  CHECK(h.text.find("the results are no longer logged") != std::string::npos);
   CHECK(std::count(h.text.begin(), h.text.end(), '\n') < 30);
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "../box_overlap.h"
 #include "foul_match.h"
@@ -32,6 +33,15 @@ struct BoxerMatch : FoulMatch {
       if (e->name() == effector) return getProperty(*e, "frozen").toBool();
     FAIL("no effector " << effector);
     return false;
+  }
+  /// Runs until the arms are released, calling `each` before each cycle; returns the number of cycles.
+  int cyclesFrozen(const std::function<void()>& each = [] {}) {
+    int cycles = 0;
+    for (; frozen("lae1") && cycles < 200; ++cycles) {
+      each();
+      run(1);
+    }
+    return cycles;
   }
 };
 }  // namespace
@@ -81,22 +91,84 @@ TEST_CASE("late in a half a freeze lasts one cycle longer because the time of pl
   BoxerMatch h;
   REQUIRE(h.trainer("(time 90)").empty());
   h.run(1);
-  REQUIRE(h.frozen("lae1"));
-  h.run(50);
-  CHECK(h.frozen("lae1"));
-  h.run(1);
-  CHECK_FALSE(h.frozen("lae1"));
+  CHECK(h.cyclesFrozen() == 51);
 }
 
-TEST_CASE("a trainer that sets the time back ends a freeze", "[fouls]") {
+TEST_CASE("a freeze lasts 1 s in every mode in which it is judged", "[fouls]") {
   BoxerMatch h;
-  REQUIRE(h.trainer("(time 90)").empty());
   h.run(1);
   REQUIRE(h.frozen("lae1"));
-  REQUIRE(h.trainer("(time 10)").empty());
-  h.set("SelfCollisionsTolerance", 1.0);
+  for (const char* mode : {"GameOver", "KickOff_Left", "KickIn_Right", "corner_kick_left", "goal_kick_right",
+                           "free_kick_left", "direct_free_kick_right", "offside_left", "pass_left", "PlayOn"}) {
+    CAPTURE(mode);
+    h.setMode(mode);
+    CHECK(h.cyclesFrozen() == 50);
+    // The exemption ends 3 s after the freeze began.
+    h.setMode(mode);
+    h.run(99);
+    CHECK_FALSE(h.frozen("lae1"));
+    h.setMode("PlayOn");
+    h.run(1);
+    REQUIRE(h.frozen("lae1"));
+  }
+}
+
+TEST_CASE("a freeze that spans play and the end of the match lasts 1 s", "[fouls]") {
+  BoxerMatch h;
+  h.run(21);
+  REQUIRE(h.frozen("lae1"));
+  h.setMode("GameOver");
+  CHECK(h.cyclesFrozen() == 30);
+}
+
+TEST_CASE("a freeze ends with the next cycle in a pause", "[fouls]") {
+  BoxerMatch h;
   h.run(1);
-  CHECK_FALSE(h.frozen("lae1"));
+  REQUIRE(h.frozen("lae1"));
+  h.setMode(GENERATE("BeforeKickOff", "Goal_Left", "Goal_Right"));
+  CHECK(h.cyclesFrozen() == 1);
+}
+
+TEST_CASE("a trainer that sets the time neither ends nor prolongs a freeze", "[fouls]") {
+  BoxerMatch h;
+  h.run(1);
+  h.set("SelfCollisionsTolerance", 1.0);
+  REQUIRE(h.frozen("lae1"));
+  SECTION("once") {
+    h.run(10);
+    REQUIRE(h.trainer(GENERATE("(time 0)", "(time 19.9)", "(time 50)")).empty());
+    CHECK(h.cyclesFrozen() == 40);
+  }
+  SECTION("in every cycle") {
+    CHECK(h.cyclesFrozen([&] { REQUIRE(h.trainer("(time 30)").empty()); }) == 50);
+  }
+  SECTION("when the match is over") {
+    h.setMode("GameOver");
+    REQUIRE(h.trainer("(time 0)").empty());
+    CHECK(h.cyclesFrozen() == 50);
+  }
+}
+
+TEST_CASE("a freeze ends even if the aspects of the match are disabled", "[fouls]") {
+  BoxerMatch h;
+  h.run(1);
+  REQUIRE(h.frozen("lae1"));
+  const auto disable = [&](const std::string& aspect) {
+    setProperty(h.at("/sys/server/gamecontrol/" + aspect), "enabled", false);
+  };
+  SECTION("the clock of play") {
+    disable("GameStateAspect");
+    CHECK(h.cyclesFrozen() == 50);
+  }
+  SECTION("a foul, or the referee of all fouls") {
+    disable(GENERATE("SelfCollisionAspect", "SoccerRuleAspect"));
+    CHECK(h.cyclesFrozen() == 1);
+  }
+  SECTION("a foul that is removed") {
+    Leaf& aspect = h.at("/sys/server/gamecontrol/SelfCollisionAspect");
+    aspect.parent()->remove(aspect);
+    CHECK_FALSE(h.frozen("lae1"));
+  }
 }
 
 TEST_CASE("small overlaps of a robot's parts are tolerated", "[fouls]") {
@@ -121,6 +193,7 @@ TEST_CASE("self-collisions may be penalized by a beam or not at all", "[fouls]")
         h.kernel.root().require<IRigidBody>("/usr/scene/AgentAspect2/robot/body/physics").state().position;
     CHECK(torso.x() == Approx(-3.0));
     CHECK(torso.y() == Approx(-10.5));
+    if (GENERATE(false, true)) h.setMode("GameOver");
     h.run(500 - 26);
     CHECK(h.fouls().empty());
     h.run(1);
