@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "../physics/mass.h"
+#include "spring_damper.h"
 
 namespace spark::mjcf {
 
@@ -313,6 +314,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
       *value = 0;
     }
   j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
+  if (j.kind == JointKind::hinge || j.kind == JointKind::slide) readSpringDamper(a, j);
   if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {
     j.maxForce = std::max(std::abs((*range)[0]), std::abs((*range)[1]));
     if ((*range)[0] != -(*range)[1])
@@ -322,6 +324,14 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   a.ignore({"group", "user"});
   a.finish();
   return j;
+}
+
+void Reader::readSpringDamper(Attributes& a, Joint& j) {
+  std::array<double, 2> both{};
+  a.fill("springdamper", both);
+  if (both[0] == 0 && both[1] == 0) return;
+  if (!(both[0] > 0 && both[1] > 0)) throw a.element().error("expected two numbers above 0 for 'springdamper'");
+  j.springDamper = both;
 }
 
 void Reader::geom(const Element& e, const Scope& scope) {
@@ -358,6 +368,7 @@ void Reader::finishMasses() {
   }
   scaleMasses();
   placeOpenFrames();
+  setSpringDampers(model_, unsupported_);
 }
 
 /// Moves frames that the file does not give to centres of mass.

@@ -41,6 +41,7 @@ class Reader {
   void joint(const Element& e, const Scope& scope);
   Joint freeJoint(const Element& e);
   Joint typedJoint(const Element& e, const Scope& scope);
+  void readSpringDamper(Attributes& a, Joint& j);
   void geom(const Element& e, const Scope& scope);
   void site(const Element& e, const Scope& scope);
   void finishMasses();

@@ -250,9 +250,21 @@ TEST_CASE("a flat mesh is refused only if its mass is needed") {
 
 TEST_CASE("unsupported attributes of a default are reported too") {
   const Read r(
-      "<mujoco><default>\n<joint springdamper='.1 1'/></default><worldbody><body><joint/><geom "
+      "<mujoco><default>\n<joint wings='.1 1'/></default><worldbody><body><joint/><geom "
       "size='1'/></body></worldbody></mujoco>");
-  CHECK(r.messages() == "a.xml:2:1: the attribute 'springdamper' of <joint> is not supported\n");
+  CHECK(r.messages() == "a.xml:2:1: the attribute 'wings' of <joint> is not supported\n");
+}
+
+TEST_CASE("a spring may be given by its time constant and damping ratio") {
+  // Numbers of MuJoCo 2.2.2.
+  const Read r(
+      world("<body><joint springdamper='.1 1' axis='0 1 0'/><geom size='.1' pos='.3 0 0'/><body pos='.5 0 0'><joint "
+            "springdamper='.2 .5' axis='0 1 0' armature='.1'/><geom size='.1' pos='.1 0 .2'/></body></body>"));
+  CHECK(r.body(1).joints[0].stiffness == Approx(150.423).epsilon(1e-5));
+  CHECK(r.body(1).joints[0].damping == Approx(30.0845).epsilon(1e-5));
+  CHECK(r.body(2).joints[0].stiffness == Approx(23.5219).epsilon(1e-5));
+  CHECK(r.body(2).joints[0].damping == Approx(2.35219).epsilon(1e-5));
+  CHECK_THAT(failure(world("<body><joint springdamper='0 1'/></body>")), Catch::Contains("two numbers above 0"));
 }
 
 TEST_CASE("the total number of elements in included files is limited") {
