@@ -31,7 +31,6 @@ class Reader {
   Attributes attributes(const Element& e, const std::string& childClass = "");
   void section(const Element& e);
   void option(const Element& e);
-  void flags(const Element& e);
   void asset(const Element& e);
   void content(const Element& parent, const Scope& scope);
   void body(const Element& e, const Scope& scope);
