@@ -34,8 +34,7 @@ void Compiler::read(Attributes& a) {
   totalMass_ = a.number("settotalmass", totalMass_);
   global_ = a.word("coordinate", {"local", "global"}, global_ ? "global" : "local") == "global";
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia",
-            "alignfree"});
+  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia", "alignfree"});
   a.finish();
 }
 

@@ -43,8 +43,9 @@ struct Joint {
   std::array<double, 2> range{0, 0};
   double reference = 0;  ///< MuJoCo's coordinate in the pose of the file [rad or m]
   double armature = 0, damping = 0, dryFriction = 0;
-  double stiffness = 0, springPosition = 0;  ///< of a spring, and where it rests [rad or m]
-  double maxForce = HUGE_VAL;                ///< limit of the sum of its actuators
+  double stiffness = 0, springPosition = 0;           ///< of a spring, and where it rests [rad or m]
+  std::optional<std::array<double, 2>> springDamper;  ///< time constant [s] and damping ratio, in place of both
+  double maxForce = HUGE_VAL;                         ///< limit of the sum of its actuators
   engine::MujocoAxis numbers;
 };
 

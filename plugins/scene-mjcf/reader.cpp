@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "../physics/mass.h"
+#include "option_reader.h"
+#include "spring_damper.h"
 
 namespace spark::mjcf {
 
@@ -97,69 +99,15 @@ Attributes Reader::attributes(const Element& e, const std::string& childClass) {
 
 void Reader::option(const Element& e) {
   Attributes a = attributes(e);
-  const auto set = [&](const char* property, Value v) { model_.options.push_back({e, property, std::move(v)}); };
-  const auto number = [&](const char* name, const char* property, double least) {
-    if (!a.has(name)) return;
-    const double v = a.number(name, 0);
-    if (v < least) throw e.error(fmt::format("expected at least {} for '{}' of <option>, found {}", least, name, v));
-    set(property, v);
-  };
-  const auto vector = [&](const char* name, const char* property) {
-    if (Vec3 v = Vec3::Zero(); a.take(name, v)) set(property, List{v.x(), v.y(), v.z()});
-  };
-  vector("gravity", "gravity");
-  vector("wind", "mujocoWind");
-  number("timestep", "timestep", 1e-6);
-  number("tolerance", "mujocoTolerance", 0);
-  number("impratio", "mujocoImpratio", 1e-6);
-  number("density", "mujocoDensity", 0);
-  number("viscosity", "mujocoViscosity", 0);
-  if (a.has("iterations")) set("mujocoIterations", std::max(1, a.integer("iterations", 100)));
-  if (a.has("cone")) set("mujocoCone", a.word("cone", {"pyramidal", "elliptic"}, ""));
-  if (a.has("solver")) set("mujocoSolver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
-  if (a.has("integrator")) {
-    const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
-    const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
-    if (wanted != taken)
-      unsupported_.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
-    set("mujocoIntegrator", taken);
-  }
-  a.ignore({"jacobian"});
-  a.finish();
-  for (const Element& child : document_.children(e))
-    if (child.tag() == "flag")
-      flags(child);
-    else
+  readOption(a, model_, unsupported_);
+  for (const Element& child : document_.children(e)) {
+    if (child.tag() != "flag") {
       unsupported_.element(child);
-}
-
-void Reader::flags(const Element& e) {
-  Attributes a = attributes(e);
-  const auto on = [&](const char* name, const char* usual = "enable") {
-    return a.word(name, {"enable", "disable"}, usual) == "enable";
-  };
-  Flags& f = model_.flags;
-  f.contact = f.contact && on("contact");
-  f.limit = f.limit && on("limit");
-  f.frictionLoss = f.frictionLoss && on("frictionloss");
-  f.passive = f.passive && on("passive");
-  f.actuation = f.actuation && on("actuation");
-  f.clampControl = f.clampControl && on("clampctrl");
-  if (!on("constraint")) f.contact = f.limit = f.frictionLoss = false;
-  const auto set = [&](const char* property, Value v) { model_.options.push_back({e, property, std::move(v)}); };
-  if (!on("gravity")) set("gravity", List{0.0, 0.0, 0.0});
-  if (!f.passive) set("mujocoDensity", 0.0), set("mujocoViscosity", 0.0);
-  const auto refuse = [&](const char* name, bool is, const char* value) {
-    if (is) unsupported_.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
-  };
-  if (!on("filterparent")) set("joinedCollide", true);
-  for (const char* const name : {"refsafe", "nativeccd", "eulerdamp", "midphase"})
-    refuse(name, !on(name), "disable");
-  for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
-    refuse(name, on(name, "disable"), "enable");
-  // Without effect here: there is nothing that they switch, or results are the same.
-  a.ignore({"equality", "warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
-  a.finish();
+      continue;
+    }
+    Attributes flags = attributes(child);
+    readFlags(flags, model_, unsupported_);
+  }
 }
 
 void Reader::asset(const Element& e) {
@@ -314,6 +262,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
       *value = 0;
     }
   j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
+  if (j.kind == JointKind::hinge || j.kind == JointKind::slide) readSpringDamper(a, j);
   if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {
     j.maxForce = std::max(std::abs((*range)[0]), std::abs((*range)[1]));
     if ((*range)[0] != -(*range)[1])
@@ -323,6 +272,14 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   a.ignore({"group", "user"});
   a.finish();
   return j;
+}
+
+void Reader::readSpringDamper(Attributes& a, Joint& j) {
+  std::array<double, 2> both{};
+  a.fill("springdamper", both);
+  if (both[0] == 0 && both[1] == 0) return;
+  if (!(both[0] > 0 && both[1] > 0)) throw a.element().error("expected two numbers above 0 for 'springdamper'");
+  j.springDamper = both;
 }
 
 void Reader::geom(const Element& e, const Scope& scope) {
@@ -359,6 +316,7 @@ void Reader::finishMasses() {
   }
   scaleMasses();
   placeOpenFrames();
+  setSpringDampers(model_, unsupported_);
 }
 
 /// Moves frames that the file does not give to centres of mass.

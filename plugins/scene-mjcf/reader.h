@@ -31,7 +31,6 @@ class Reader {
   Attributes attributes(const Element& e, const std::string& childClass = "");
   void section(const Element& e);
   void option(const Element& e);
-  void flags(const Element& e);
   void asset(const Element& e);
   void content(const Element& parent, const Scope& scope);
   void body(const Element& e, const Scope& scope);
@@ -41,6 +40,7 @@ class Reader {
   void joint(const Element& e, const Scope& scope);
   Joint freeJoint(const Element& e);
   Joint typedJoint(const Element& e, const Scope& scope);
+  void readSpringDamper(Attributes& a, Joint& j);
   void geom(const Element& e, const Scope& scope);
   void site(const Element& e, const Scope& scope);
   void finishMasses();
