@@ -63,7 +63,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
 
 engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
   const Mesh& mesh = meshes_.get(a, unsupported_);
-  const engine::Mass mass = shapeMass(mesh.surface, weight, geom);
+  engine::Mass mass = shapeMass(mesh.surface, weight, geom);
   constexpr double kSame = 1e-6;  // relative
   const Weight byVolume{1, std::nullopt};
   if (!compiler_.exactMeshInertia() &&
