@@ -39,7 +39,7 @@ def example():
 def t1():
     """The trajectories, from the lines that the test prints."""
     run = subprocess.run([BUILD / "tests/test-scene-mjcf-trajectory"], capture_output=True, text=True)
-    found = re.findall(r"(2 s standing|1 s moving): at most (\S+) m and rad", run.stdout)
+    found = re.findall(r"(2 s standing|1 s moving): largest difference (\S+) m or rad", run.stdout)
     figures = "; ".join(f"{what}: {float(distance):.1e} m and rad" for what, distance in found)
     good = run.returncode == 0 and len(found) == 2 and all(float(d) <= 1e-9 for _, d in found)
     today, same = mujoco_of_today()
