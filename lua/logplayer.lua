@@ -6,7 +6,8 @@
 -- 150).
 include "house.lua"
 
-local file    = option{ name = "file", default = "sparkmonitor.log", doc = "The log: what --set monitorLog=... of a soccer config, or rcssserver3d, wrote." }
+local file    = option{ name = "file", default = "sparkmonitor.log",
+  doc = "The log: what --set monitorLog=... of a soccer config, or rcssserver3d, wrote." }
 local speed   = option{ name = "speed", default = 1.0, doc = "How fast it plays; 1: as it was recorded." }
 local wait    = option{ name = "wait", default = true, doc = "Begins when the first monitor is there." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }

@@ -89,7 +89,8 @@ function soccerCompat(version)
   for path, values in pairs(versions[version]) do
     local node = get(path)
     for name, value in pairs(values) do
-      if name ~= "decimals" or node.class == "SexpParser" then node[name] = value end   -- other languages have their own number format
+      -- Other languages have their own number format.
+      if name ~= "decimals" or node.class == "SexpParser" then node[name] = value end
     end
   end
 end

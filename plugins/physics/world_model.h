@@ -306,6 +306,8 @@ class WorldModel {
   void countTurns();
   void listTurning();
   void startCoordinates(const engine::Joint& j);
+  /// Sets the turns of an axis, and counts them in State::turned.
+  void setTurns(engine::JointCoordinates& c, int axis, std::int32_t turns);
   double rateOf(engine::Index joint, int axis) const;
   double hingeAngle(engine::Index joint) const;
   double universalAngle(const engine::Joint& j, int axis) const;

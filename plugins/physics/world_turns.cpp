@@ -9,8 +9,8 @@
 //     turns          0     0     1     1
 //     coordinate    2.9   3.1   3.28  3.48
 //
-// Whoever sets poses between two steps changes the coordinate by at most half a turn. Setting a joint's bodies, anchor
-// or axes begins anew, at the angle of the poses.
+// A pose that is set between two steps changes the coordinate by at most half a turn. Setting a joint's bodies, anchor
+// or axes starts again at the angle of the poses.
 
 namespace spark::physics {
 
@@ -55,6 +55,12 @@ void WorldModel::startCoordinates(const Joint& j) {
   turningAt_ = 0;
 }
 
+void WorldModel::setTurns(JointCoordinates& c, int axis, std::int32_t turns) {
+  state_.turned -= isTurned(c);
+  c.turns[axis] = turns;
+  state_.turned += isTurned(c);
+}
+
 void WorldModel::listTurning() {
   turning_.clear();
   state_.turned = 0;
@@ -76,10 +82,7 @@ void WorldModel::countTurns() {
       const double now = rawAngle(t.joint, axis);
       const std::int32_t turns = turnsAfter(c.angle[axis], c.turns[axis], now);
       c.angle[axis] = now;
-      if (turns == c.turns[axis]) continue;
-      state_.turned -= isTurned(c);
-      c.turns[axis] = turns;
-      state_.turned += isTurned(c);
+      if (turns != c.turns[axis]) setTurns(c, axis, turns);
     }
   }
   countedAt_ = poses_;
@@ -128,10 +131,8 @@ void WorldModel::loadCoordinate(JointHandle joint, int axis, double angle) {
   // Far from +-pi turns are certain; near it the poses that are restored too decide.
   if (axis < 0 || axis >= turningAxes(of(joint)) || !(std::abs(angle) < 1e9)) return;
   JointCoordinates& c = state_.coordinates[joints_[joint]];
-  state_.turned -= isTurned(c);
-  c.turns[axis] = static_cast<std::int32_t>(std::round(angle / (2 * kPi)));
+  setTurns(c, axis, static_cast<std::int32_t>(std::round(angle / (2 * kPi))));
   c.angle[axis] = angle - 2 * kPi * c.turns[axis];
-  state_.turned += isTurned(c);
 }
 
 }  // namespace spark::physics

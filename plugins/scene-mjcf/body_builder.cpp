@@ -31,15 +31,6 @@ void setPose(Leaf& body, const Pose& world) {
 
 std::string bodyPath(const std::string& transform) { return "../../" + transform + "/body"; }
 
-/// A spring is a law of its own, beside the joint's controller and its limits.
-void setSpring(IJoint& made, const Joint& j) {
-  if (!(j.stiffness > 0)) return;
-  if (made.leaf().classObject()->method("setSpring"))
-    callMethod(made.leaf(), "setSpring", List{0, j.stiffness, j.springPosition});
-  else
-    made.control(0, {.stiffness = j.stiffness, .position = j.springPosition});
-}
-
 /// `world`: pose of the child link's frame.
 void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags) {
   made.setWorldAxis(0, world.rotation * j.axis);
@@ -59,7 +50,8 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags
   callMethod(leaf, "setMujocoFrictionSolimp", List{0, toList(n.frictionSolimp)});
   // Without a motor: nothing but dry friction.
   made.control(0, {});
-  if (flags.passive) setSpring(made, j);
+  // A spring is a law of its own, beside the joint's controller and its limits.
+  if (flags.passive && j.stiffness > 0) callMethod(leaf, "setSpring", List{0, j.stiffness, j.springPosition});
 }
 
 }  // namespace
@@ -105,9 +97,11 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
   // A joint has one axis: between two of them there is a light body.
   if (joints.size() > 1)
-    c_.unsupported.add(joints[0].from,
-                       fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass",
-                                   joints.size(), kBetween));
+    c_.unsupported.add(
+        joints[0].from,
+        fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass, except "
+                    "in MuJoCo",
+                    joints.size(), kBetween));
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const std::string name = c_.names.body(c_.top, fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transformAt(name, bodyPose(p));

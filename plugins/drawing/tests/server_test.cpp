@@ -22,7 +22,7 @@ struct Studio : TestHost {
     server = node->as<IDrawings>();
   }
   void poll() { node->as<IInputSource>()->poll(); }
-  /// Polls until so many packets have been taken: a poll takes only what it has the time for.
+  /// Polls until this number of packets has been read: one poll may end before it has read all.
   void pollUntil(std::int64_t packets) {
     while (get("packets") < packets) poll();
   }
