@@ -10,7 +10,7 @@ The first line of a fenced block gives its kind:
     ```lua sumo.lua       a file, written into the working folder of the commands so far
     ```lua >>sumo.lua     text for the end of that file
     ```sh                 commands for bash, each of which must succeed; the next block goes on in their folder and environment
-    ```sh until Ctrl-C    commands that run until they are interrupted: after their first line of output they are
+    ```sh until Ctrl-C    commands that run until they are interrupted: after their first line on stdout they are
     ```sh skip: REASON    commands that are not followed
     ```text               what the commands before it print on stdout and stderr: these lines, in this order. ... is any text, or any lines.
     ```text like          the same, but numbers and hashes may differ
@@ -101,16 +101,14 @@ class Shell:
     def folder(self):
         return Path(self.run("pwd"))
 
-    def start(self, commands, said):
+    def start(self, commands, out, errors=subprocess.STDOUT):
         """bash with these commands, which leave their folder and environment to the next block."""
         commands = re.sub(r"(\$PWD/)?build/release", lambda _: self.build, commands)
         script = f". {self.state}\nset -eo pipefail\n{commands}\n{{ export -p; echo \"cd '$PWD'\"; }} >{self.state}\n"
-        environment = {**os.environ, "HOME": str(self.home), "XDG_RUNTIME_DIR": str(self.own), "TMPDIR": str(self.own), "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
+        environment = {**os.environ, "HOME": str(self.home), "XDG_RUNTIME_DIR": str(self.own), "TMPDIR": str(self.own),
+                       "CXXFLAGS": "-Wall -Wextra -Werror", "CMAKE_BUILD_PARALLEL_LEVEL": "2"}
         environment.pop("PYTHONUNBUFFERED", None)  # a line in pieces would have others' lines between them
-        return self.running(subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=said, stderr=subprocess.STDOUT, env=environment,
-                                             start_new_session=True))
-
-    def running(self, shell):
+        shell = subprocess.Popen(["bash", "-c", script], stdin=subprocess.DEVNULL, stdout=out, stderr=errors, env=environment, start_new_session=True)
         self.shells.append(shell)
         return shell
 
@@ -121,32 +119,18 @@ class Shell:
 
     def run(self, commands):
         with self.output() as said:
-            shell = self.start(commands, said)
-            try:
-                shell.wait(timeout=SECONDS)
-            except subprocess.TimeoutExpired:
-                raise Failure(f"it took longer than {SECONDS} s, and printed\n{text(said)}") from None
-            if shell.returncode:
-                raise Failure(f"it ended with exit code {shell.returncode}, and printed\n{text(said)}")
-            return text(said)
+            return ended(self.start(commands, said), said)
 
     def run_until_stopped(self, commands):
+        """Commands that print a line on stdout when they are ready, and end after SIGINT."""
         with self.output() as said:
-            shell = self.start(f"exec {commands.strip()}", said)
-            end = time.monotonic() + SECONDS
-            while "\n" not in text(said, whole=True) and shell.poll() is None and time.monotonic() < end:
-                time.sleep(0.02)
-            early = shell.poll()
-            if early is not None:
-                raise Failure(f"it ended by itself with exit code {early}, and printed\n{text(said)}")
+            shell = self.start(f"exec {commands.strip()}", subprocess.PIPE, said)
+            ready = shell.stdout.readline()
+            if not ready:
+                raise Failure(f"it ended by itself with exit code {shell.wait()}, and printed\n{text(said)}")
             shell.send_signal(signal.SIGINT)
-            try:
-                shell.wait(timeout=SECONDS)
-            except subprocess.TimeoutExpired:
-                raise Failure(f"it did not end after Ctrl-C, and printed\n{text(said)}") from None
-            if shell.returncode:
-                raise Failure(f"it ended with exit code {shell.returncode} after Ctrl-C, and printed\n{text(said)}")
-            return text(said)
+            rest = shell.stdout.read()
+            return (ready + rest).decode() + ended(shell, said, " after Ctrl-C")
 
     def close(self):
         """Ends what is left in the background."""
@@ -158,11 +142,21 @@ class Shell:
             shell.wait()
 
 
-def text(file, whole=False):
-    """What a file holds, without line ends at its end unless `whole`."""
+def ended(shell, said, when=""):
+    """What commands printed that have ended well."""
+    try:
+        shell.wait(timeout=SECONDS)
+    except subprocess.TimeoutExpired:
+        raise Failure(f"it took longer than {SECONDS} s{when}, and printed\n{text(said)}") from None
+    if shell.returncode:
+        raise Failure(f"it ended with exit code {shell.returncode}{when}, and printed\n{text(said)}")
+    return text(said)
+
+
+def text(file):
+    """What a file holds, without line ends at its end."""
     file.seek(0)
-    said = file.read()
-    return said if whole else said.rstrip("\n")
+    return file.read().rstrip("\n")
 
 
 class Failure(Exception):

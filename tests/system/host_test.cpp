@@ -311,6 +311,20 @@ TEST_CASE("sparkctl refuses to rename or remove the servers of a running simulat
   CHECK(p.wait() == 0);
 }
 
+TEST_CASE("sparkctl --wait waits for a simulation that starts later") {
+  TemporaryFolder folder;  // with the sockets of no other simulation
+  for (const char* name : {"XDG_RUNTIME_DIR", "TMPDIR"}) setenv(name, folder.path().c_str(), 1);
+  const std::string config = folder.write("small.lua", "include \"house.lua\"\nfiles() simulation() control()\n");
+  Process early({program("sparkctl"), "--wait", "1800", "get", "/sys/server/simulation.step"});
+  Process host({program("sparkhost"), "--config", config, "--log-level", "error"});
+  for (const char* name : {"XDG_RUNTIME_DIR", "TMPDIR"}) unsetenv(name);
+  CHECK_THAT(early.line(), Contains("step = 0.02"));
+  CHECK(early.wait() == 0);
+  host.line();
+  host.signal(SIGTERM);
+  CHECK(host.wait() == 0);
+}
+
 TEST_CASE("sparkctl reports that there is no instance to connect to") {
   TemporaryFolder folder;
   setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);
