@@ -1,6 +1,7 @@
 #include "world_model.h"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
 

@@ -10,8 +10,9 @@ using engine::JointParameter;
 
 namespace {
 
-/// Of a body with several joints, the part of the mass that each body between them has.
-constexpr double kBetween = 0.01;
+/// Of a body with several joints, the part of the mass that each body between them has: little enough to move as
+/// without them, and enough for engines that divide by it.
+constexpr double kBetween = 1e-6;
 
 /// World pose of the frame of a body: that of the link, with the centre of mass as origin.
 Pose bodyPose(const PlacedBody& b) { return compose(b.world, {b.mass.center, Mat3::Identity()}); }
@@ -96,12 +97,6 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
   }
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
   // A joint has one axis: between two of them there is a light body.
-  if (joints.size() > 1)
-    c_.unsupported.add(
-        joints[0].from,
-        fmt::format("a body with {} joints gets light bodies between them, each with {} of its mass, except "
-                    "in MuJoCo",
-                    joints.size(), kBetween));
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const std::string name = c_.names.body(c_.top, fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transformAt(name, bodyPose(p));

@@ -31,10 +31,11 @@ void Compiler::read(Attributes& a) {
   exactMeshInertia_ = a.flag("exactmeshinertia", exactMeshInertia_);
   boundMass_ = a.number("boundmass", boundMass_);
   boundInertia_ = a.number("boundinertia", boundInertia_);
+  balances_ = a.flag("balanceinertia", balances_);
   totalMass_ = a.number("settotalmass", totalMass_);
   global_ = a.word("coordinate", {"local", "global"}, global_ ? "global" : "local") == "global";
   // Bodies without joints become part of their parents in any case.
-  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "balanceinertia", "alignfree"});
+  a.ignore({"texturedir", "discardvisual", "fusestatic", "convexhull", "usethread", "alignfree"});
   a.finish();
 }
 
@@ -43,13 +44,16 @@ std::string Compiler::fileName(const std::string& name) const {
   return stripsPaths_ && slash != std::string::npos ? name.substr(slash + 1) : name;
 }
 
-void Compiler::raise(engine::Mass& mass) const {
+void Compiler::adjust(engine::Mass& mass) const {
   if (mass.mass <= 0 && boundMass_ <= 0) return;
   mass.mass = std::max(mass.mass, boundMass_);
-  if (boundInertia_ <= 0) return;
+  if (boundInertia_ <= 0 && !balances_) return;
   const Eigen::SelfAdjointEigenSolver<Mat3> axes(mass.inertia);
-  const Vec3 moments = axes.eigenvalues().cwiseMax(boundInertia_);
-  mass.inertia = axes.eigenvectors() * moments.asDiagonal() * axes.eigenvectors().transpose();
+  const Vec3 moments = axes.eigenvalues().cwiseMax(boundInertia_);  // ascending
+  if (balances_ && moments[0] + moments[1] < moments[2])
+    mass.inertia = Vec3::Constant(moments.mean()).asDiagonal();
+  else if (boundInertia_ > 0)
+    mass.inertia = axes.eigenvectors() * moments.asDiagonal() * axes.eigenvectors().transpose();
 }
 
 std::optional<Mat3> Compiler::orientation(Attributes& a) const {

@@ -41,7 +41,8 @@ class Compiler {
   /// What the masses of all bodies are scaled to [kg]; 0 or less: they stay.
   double totalMass() const { return totalMass_; }
   /// Raises mass and moments of inertia to the least ones of the file; a mass of 0 stays when there is no least mass.
-  void raise(engine::Mass& mass) const;
+  /// With `balanceinertia`, moments that no body can have become their mean.
+  void adjust(engine::Mass& mass) const;
 
   /// An angle of the file in rad.
   double angle(double v) const { return degrees_ ? degToRad(v) : v; }
@@ -64,7 +65,7 @@ class Compiler {
   bool degrees_ = true;
   bool global_ = false;
   bool autolimits_ = true;
-  bool exactMeshInertia_ = false, fitsBounds_ = false, stripsPaths_ = false;
+  bool exactMeshInertia_ = false, fitsBounds_ = false, stripsPaths_ = false, balances_ = false;
   std::string eulerSequence_ = "xyz";
   std::string meshFolder_;
   std::string inertiaFromGeom_ = "auto";

@@ -312,7 +312,7 @@ void Reader::finishMasses() {
       for (const Geom& g : b.geoms)
         if (g.mass) b.mass = physics::together(b.mass, *g.mass);
     }
-    compiler_.raise(b.mass);
+    compiler_.adjust(b.mass);
   }
   scaleMasses();
   placeOpenFrames();

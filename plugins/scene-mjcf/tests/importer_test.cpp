@@ -64,7 +64,7 @@ TEST_CASE("a body with several joints gets light bodies between them") {
   CHECK(h.at<IJoint>("m/b-2/y").body(1) == &h.at<IRigidBody>("m/b-1/body"));
   CHECK(h.at<IJoint>("m/b/s").jointType() == engine::JointType::slider);
   CHECK(h.at<IRigidBody>("m/b/body").mass() + 2 * h.at<IRigidBody>("m/b-1/body").mass() == Approx(3));
-  CHECK_THAT(h.text, Catch::Contains("m.xml:1:57: a body with 3 joints gets light bodies"));
+  CHECK(h.at<IRigidBody>("m/b-1/body").mass() == Approx(3e-6));
   h.step(10);
 }
 
@@ -102,8 +102,8 @@ TEST_CASE("with strict, a model that the tree cannot represent exactly is refuse
   MjcfHost h;
   setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
   CHECK_THAT(
-      h.failure("<mujoco model='m'><worldbody><body><joint/><joint/><geom size='1'/></body></worldbody></mujoco>"),
-      Catch::Contains("2 joints gets light bodies"));
+      h.failure("<mujoco model='m'><worldbody><body><joint type='ball' damping='1'/><geom size='1'/></body></worldbody></mujoco>"),
+      Catch::Contains("damping"));
   CHECK_FALSE(h.scene.child("m"));
 }
 
