@@ -1,12 +1,15 @@
 """The steps of a new user: clones into an empty folder and runs the README's commands with an empty compiler cache."""
 import contextlib
+import json
 import os
 import subprocess
 import tempfile
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from acceptance.common import ROOT, run, say
+
+SLOW = ("nice", "-n", "19", "taskset", "-c", "0")
 
 
 @dataclass
@@ -79,3 +82,40 @@ def unit():
             raise RuntimeError("tests/catch_main.cpp does not compile")
         end = os.times()
     return (end.children_user - start.children_user + end.children_system - start.children_system) / count
+
+
+@dataclass
+class Newcomer:
+    """What the README's commands did in a fresh clone."""
+    play: Done           # with an empty compiler cache
+    installed: bool      # that cmake --install succeeded
+    check: Done          # with an empty compiler cache
+    stages: list         # of check, with their times
+    slow: Done           # the tests again with the lowest priority, on one processor, beside two busy loops
+    unit: float          # CPU seconds of unit(), the mean of before and after
+
+
+def newcomer():
+    """Runs the commands, half an hour or more. Milestones share the result: it is kept for the commit, unless something is uncommitted."""
+    commit, changes = (subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+                       for words in (["rev-parse", "HEAD"], ["status", "--porcelain"]))
+    kept = ROOT / f"build/newcomer/{commit}.json"
+    if kept.exists() and not changes:
+        say(f"The fresh clone of this commit was judged before: {kept}")
+        found = json.loads(kept.read_text())
+        return Newcomer(**{**found, **{name: Done(**found[name]) for name in ("play", "check", "slow")}})
+    with fresh_clone() as clone:
+        before = unit()
+        play = clone.command("tools/play")
+        installed = clone.installs()
+        clone.forget_what_was_built()
+        check = clone.command("tools/check")
+        stages = clone.stages("plain")
+        reference = (before + unit()) / 2
+        with busy(2):
+            slow = clone.command("tools/check", before=SLOW)
+    result = Newcomer(play, installed, check, stages, slow, reference)
+    if not changes:
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        kept.write_text(json.dumps(asdict(result), indent=1))
+    return result

@@ -6,7 +6,7 @@ from collections import Counter
 
 from acceptance import english
 from acceptance.common import FAIL, OPEN, PASS, ROOT, last_check, tests
-from acceptance.fresh import busy, fresh_clone
+from acceptance.fresh import newcomer
 
 PAGES = ROOT / "tests/pages"
 LINES = 100
@@ -15,33 +15,19 @@ STOPS = 0.1  # share of sentences that may stop a reader
 fresh = False  # points 1 and 2 run the commands in a fresh clone
 
 
-def newcomer():
+def both_commands():
     if not fresh:
         found = last_check("plain", "all", "long")
         return f"--fresh judges this; last tools/check ({found[0]}): {found[1]}; {found[2][-1]}" if found else "--fresh judges this", OPEN
-    with fresh_clone() as clone:
-        done = [clone.command("tools/play")]
-        clone.forget_what_was_built()
-        done.append(clone.command("tools/check"))
-        stages = clone.stages("plain")
-        clone.forget_what_was_built()
-        done.append(clone.command("tools/check", "--all"))
-        stages += ["--all:", *clone.stages("all")]
-    return "; ".join(map(str, [*done, *stages])), PASS if all(d.passed for d in done) else FAIL
+    done = newcomer()
+    return f"{done.play}; {done.check}; {'; '.join(done.stages)}", PASS if done.play.passed and done.check.passed else FAIL
 
 
 def slow_machine():
-    """With existing builds, because only the tests have deadlines."""
     if not fresh:
         return "--fresh judges this", OPEN
-    with fresh_clone() as clone:
-        built = clone.command("tools/play")
-        with busy(2):
-            nice = clone.command("tools/check", before=("nice", "-n", "19"))
-        pinned = clone.command("tools/check", before=("taskset", "-c", "0"))
-        with busy(2):
-            both = clone.command("tools/check", before=("nice", "-n", "19", "taskset", "-c", "0"))
-    return f"beside two busy loops: {nice}; {pinned}; beside two busy loops: {both}", PASS if built.passed and nice.passed and pinned.passed and both.passed else FAIL
+    slow = newcomer().slow
+    return str(slow), PASS if slow.passed else FAIL
 
 
 def readme():
@@ -67,8 +53,8 @@ def sampled_english():
 
 
 POINTS = {
-    "1": ("both commands in a fresh clone with an empty compiler cache", newcomer),
-    "2": ("the tests beside two busy loops, at the lowest priority, on one core", slow_machine),
+    "1": ("both commands in a fresh clone with an empty compiler cache", both_commands),
+    "2": ("the tests at the lowest priority, on one core, beside two busy loops", slow_machine),
     "3": ("README, names, pages", readme),
     "4": ("sampled English", sampled_english),
 }

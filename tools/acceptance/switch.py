@@ -3,7 +3,7 @@ import re
 
 from acceptance import demo_team, mutants
 from acceptance.common import FAIL, OPEN, PASS, ROOT, last_check, run, say, tests
-from acceptance.fresh import fresh_clone, unit
+from acceptance.fresh import newcomer
 
 SESSIONS = 13
 # CPU time with an empty compiler cache, as a multiple of that of compiling tests/catch_main.cpp.
@@ -24,18 +24,11 @@ def stages():
     if not fresh:
         found = last_check("plain", "all", "long")
         return f"last tools/check ({found[0]}): {'; '.join(found[2])}" if found else "tools/check has not run here", OPEN
-    with fresh_clone() as clone:
-        before = unit()
-        play = clone.command("tools/play")
-        installed = clone.installs()
-        clone.forget_what_was_built()
-        check = clone.command("tools/check")
-        table = "; ".join(clone.stages("plain"))
-        reference = (before + unit()) / 2
-    ratios = play.cpu / reference, check.cpu / reference
-    measured = (f"{play}: {ratios[0]:.0f} x a compilation of {reference:.1f} CPU s (at most {PLAY_UNITS}); cmake --install {'works' if installed else 'FAILS'}; "
-                f"{check}: {ratios[1]:.0f} x (at most {CHECK_UNITS}): {table}")
-    good = play.passed and installed and check.passed and ratios[0] <= PLAY_UNITS and ratios[1] <= CHECK_UNITS
+    done = newcomer()
+    ratios = done.play.cpu / done.unit, done.check.cpu / done.unit
+    measured = (f"{done.play}: {ratios[0]:.0f} x a compilation of {done.unit:.1f} CPU s (at most {PLAY_UNITS}); "
+                f"cmake --install {'works' if done.installed else 'FAILS'}; {done.check}: {ratios[1]:.0f} x (at most {CHECK_UNITS}): {'; '.join(done.stages)}")
+    good = done.play.passed and done.installed and done.check.passed and ratios[0] <= PLAY_UNITS and ratios[1] <= CHECK_UNITS
     return measured, PASS if good else FAIL
 
 
