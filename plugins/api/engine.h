@@ -57,7 +57,7 @@ inline void warnOfArmature(const Model& model, const Leaf& node, bool& said) {
 /// Steps worlds.
 class IEngine {
  public:
-  SPARK_INTERFACE(IEngine, 3);
+  SPARK_INTERFACE(IEngine, 4);
   virtual ~IEngine() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
@@ -73,6 +73,8 @@ class IEngine {
   virtual bool controls() const { return false; }
   /// True: the engine applies JointAxis::damping itself. False: it comes as forces on the bodies.
   virtual bool damps() const { return controls(); }
+  /// True: the engine applies the damping of bodies itself. False: it comes as forces on them.
+  virtual bool dampsBodies() const { return false; }
   /// True: the engine applies the springs of JointAxis itself. False: they come as forces on the bodies.
   virtual bool springs() const { return false; }
   /// The length of step that suits the engine [s], of which a step of the simulation has a whole number; 0: any. That

@@ -56,6 +56,14 @@ struct Mass {
   Mat3 inertia = Mat3::Identity();  ///< about the body's origin, body frame [kg m^2]
 };
 
+/// One of the parts that a body consists of.
+struct Part {
+  double mass = 0;               ///< kg, at least 0
+  Vec3 center = Vec3::Zero();    ///< of its mass, in the body's frame [m]
+  Mat3 inertia = Mat3::Zero();   ///< about its own centre, axes of the body's frame [kg m^2]
+  Mat3 axes = Mat3::Identity();  ///< its principal axes, if they are; of equal moments, any are
+};
+
 /// A rigid body. Its origin is its centre of mass.
 struct Body {
   std::uint64_t id = 0;  ///< identity in its world, rises in order of creation, never used again
@@ -70,6 +78,11 @@ struct Body {
   /// connected by one joint. An engine with joints of several axes may leave its mass to the next body.
   bool connector = false;
   int joints = 0;  ///< number of attached joints
+  /// Damping of the motion in the world, 0 or more, at the origin of the link's frame [N s/m] and about it [N m s/rad].
+  double linearDamping = 0, angularDamping = 0;
+  /// For engines whose drag and contacts depend on the parts of a body: all of them, the first with its joints; or
+  /// none. Their masses are shares of the body's mass. Geoms name the part that they belong to.
+  std::vector<Part> parts;
 };
 
 /// Kinds of collision shapes.
@@ -110,6 +123,7 @@ struct Geom {
     std::array<double, 2> solref{0.02, 1};                   ///< time constant [s], damping ratio
     std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance: from, to, width [m], midpoint, power
     double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
+    int part = 0;                ///< index in Body::parts
     bool operator==(const Mujoco&) const = default;
   } mujoco;
   void* owner = nullptr;  ///< passed to the pair filter and stored in contacts
@@ -155,8 +169,10 @@ enum class JointParameter {
 struct JointAxis {
   double lowStop = -HUGE_VAL, highStop = HUGE_VAL;  ///< rad or m; equal stops lock the axis; infinite: no stop
   double armature = 0;                              ///< inertia of the motor's rotor about the axis [kg m^2 or kg]
-  double damping = 0;                               ///< force per velocity, against it [N m s or N s/m]
-  double dryFriction = 0;                           ///< largest force of dry friction [Nm or N]
+  /// Force per velocity, against it [N m s or N s/m]. Of a ball joint, which has no axes, that of the first entry acts
+  /// about all directions.
+  double damping = 0;
+  double dryFriction = 0;  ///< largest force of dry friction [Nm or N]
   /// A passive spring: the force stiffness (springPosition - coordinate), beside motor and controller [Nm/rad or N/m].
   double stiffness = 0;
   double springPosition = 0;  ///< rad or m; counted as angles of joints are

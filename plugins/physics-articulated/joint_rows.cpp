@@ -193,7 +193,13 @@ struct JointWriter {
 
   // ---- joint types ----
 
-  void writeBall() { addBall(joint.ode.erp, joint.ode.cfm); }
+  void writeBall() {
+    addBall(joint.ode.erp, joint.ode.cfm);
+    if (const double damping = joint.axes[0].damping; damping > 0)
+      for (const Vec3& axis : {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()})
+        addInertial(SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis),
+                    damping / constants.inverseDt, 0);
+  }
 
   void writeHinge() {
     addBall(constants.erp, constants.cfm);

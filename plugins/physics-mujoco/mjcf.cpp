@@ -142,6 +142,7 @@ void Trees::mergeConnectors(const Model& model) {
 }
 
 std::string bodyName(Index body) { return fmt::format("b{}", body); }
+std::string partName(Index body, std::size_t part) { return fmt::format("b{}p{}", body, part); }
 std::string geomName(Index geom) { return fmt::format("g{}", geom); }
 std::string jointName(Index joint, int coordinate) { return fmt::format("j{}_{}", joint, coordinate); }
 
@@ -163,8 +164,10 @@ int coordinatesOf(JointType type) {
 namespace {
 
 /// Principal moments of inertia, and their axes.
-std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia) {
-  if (inertia.isDiagonal(0)) return {inertia.diagonal(), Mat3::Identity()};
+/// `wanted`: to be taken if they are. Of equal moments, any axes are principal, and drag depends on them.
+std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia, const Mat3& wanted) {
+  if (const Mat3 turned = wanted.transpose() * inertia * wanted; turned.isDiagonal(1e-14))
+    return {turned.diagonal(), wanted};
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(inertia);
   Mat3 axes = solver.eigenvectors();
   if (axes.determinant() < 0) axes.col(2) *= -1;
@@ -288,7 +291,8 @@ struct Writer {
         put("/>\n");
         break;
       case JointType::ball:
-        put(R"(<joint name="{}" type="ball" pos="{}"/>)", jointName(link.joint, 0), text(at));
+        put(R"(<joint name="{}" type="ball" pos="{}" damping="{:.17g}"/>)", jointName(link.joint, 0), text(at),
+            j.axes[0].damping);
         break;
       case JointType::universal:
         // The first joint of a body is the one next to the parent.
@@ -329,6 +333,29 @@ struct Writer {
     }
   }
 
+  /// The parts of a body, at least one. `mass` and `inertia` are of its connectors.
+  static std::vector<engine::Part> partsOf(const engine::Body& b, double mass, const Mat3& inertia) {
+    double sum = 0;
+    for (const engine::Part& p : b.parts) sum += p.mass;
+    if (!(sum > 0)) return {{b.mass + mass, Vec3::Zero(), b.inertia + inertia}};
+    std::vector<engine::Part> parts = b.parts;
+    for (engine::Part& p : parts) p.mass *= (b.mass + mass) / sum, p.inertia *= (b.mass + mass) / sum;
+    return parts;
+  }
+  void putInertial(const engine::Body& b, const engine::Part& part) {
+    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
+    if (part.mass == 0) return;
+    const auto [moments, axes] = principalAxes(part.inertia, part.axes);
+    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", part.mass, text(moments));
+    putPose({part.center - b.linkOrigin, axes});
+    put("/>\n");
+  }
+  void putGeoms(Index body, std::size_t part, std::size_t parts) {
+    for (const Index g : geoms[body])
+      if (const auto own = static_cast<std::size_t>(model.geoms[g].mujoco.part); (own < parts ? own : 0) == part)
+        putGeom(g);
+  }
+
   /// A link with its body, with the joints of the connectors before it, and all links below.
   void putLink(std::size_t index) {
     Pose zero;
@@ -353,13 +380,16 @@ struct Writer {
     if (parent != kNone) place.position -= model.bodies[trees.links[parent].body].linkOrigin;
     putPose(place);
     put(">\n");
-    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
-    const auto [moments, axes] = principalAxes(b.inertia + inertia);
-    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", b.mass + mass, text(moments));
-    putPose({-b.linkOrigin, axes});
-    put("/>\n");
+    const auto parts = partsOf(b, mass, inertia);
+    putInertial(b, parts.front());
     for (const std::size_t i : chain) putJoint(trees.links[i]);
-    for (const Index g : geoms[link.body]) putGeom(g);
+    putGeoms(link.body, 0, parts.size());
+    for (std::size_t part = 1; part < parts.size(); ++part) {
+      put(R"(<body name="{}">)", partName(link.body, part));
+      putInertial(b, parts[part]);
+      putGeoms(link.body, part, parts.size());
+      put("</body>\n");
+    }
     for (const Index child : children[index]) putLink(child);
     put("</body>\n");
   }

@@ -41,6 +41,8 @@ struct Sizes {
 
 // Names of MuJoCo's elements: b and the body's index, g and the geom's, j and the joint's with the coordinate's.
 std::string bodyName(Index body);
+/// Of a part of a body, from 1.
+std::string partName(Index body, std::size_t part);
 std::string geomName(Index geom);
 std::string jointName(Index joint, int coordinate);
 

@@ -38,6 +38,7 @@ class MujocoEngine : public Leaf, public engine::IEngine, public engine::ICollis
   bool stepsParts() const override { return false; }
   bool controls() const override { return true; }
   bool springs() const override { return true; }
+  bool dampsBodies() const override { return true; }
   double usualStep() const override { return 0.005; }
   void forget(const engine::Model& model) override;
 

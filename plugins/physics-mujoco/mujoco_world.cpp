@@ -26,6 +26,7 @@ bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pair) {
 }
 
 Vec3 toVec(const mjtNum* v) { return {v[0], v[1], v[2]}; }
+auto rotationAt(const mjtNum* m) { return Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>>(m); }
 
 const DynamicState& worldState() {
   static const DynamicState state;
@@ -60,7 +61,14 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Co
     Origin& from = origins_.emplace_back();
     from.body = model.bodies[link.body].id;
     from.mujocoBody = id(mjOBJ_BODY, bodyName(link.body));
-    if (link.joint == kNone) continue;
+    for (std::size_t part = 1; part < model.bodies[link.body].parts.size(); ++part)
+      if (const int at = id(mjOBJ_BODY, partName(link.body, part)); at >= 0) from.parts.push_back(at);
+    if (link.joint == kNone) {
+      const engine::Body& b = model.bodies[link.body];
+      for (int k = 0, dof = m_->body_dofadr[from.mujocoBody]; k < 6; ++k)
+        m_->dof_damping[dof + k] = k < 3 ? b.linearDamping : b.angularDamping;
+      continue;
+    }
     const Joint& j = model.joints[link.joint];
     from.joint = j.id;
     from.attachedAt = j.attachedAt;
@@ -284,11 +292,11 @@ void MujocoWorld::give(const Model& model, State& state) const {
     s.torque.setZero();
     const int id = bodyId_[i];
     if (id < 0) continue;
-    s.position = toVec(d_->xipos + 3 * id);
+    s.position = centreOf(model, i);
     std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
     s.rotation = rotationOf(s.quaternion);
     s.angularVelocity = toVec(d_->cvel + 6 * id);
-    s.linearVelocity = velocityOf(id);
+    s.linearVelocity = velocityOf(id, s.position);
     s.awake = true;
     s.mark = mark_;
     state.markMoved(i);
@@ -298,13 +306,19 @@ void MujocoWorld::give(const Model& model, State& state) const {
     if (trees_.links[i].carrier != kNone && trees_.links[i].body != kNone) giveConnector(model, state, i);
 }
 
-Vec3 MujocoWorld::armOf(int body) const {
-  return toVec(d_->xipos + 3 * body) - toVec(d_->subtree_com + 3 * m_->body_rootid[body]);
+Vec3 MujocoWorld::centreOf(const Model& model, Index body) const {
+  const int id = bodyId_[body];
+  if (model.bodies[body].parts.size() < 2) return toVec(d_->xipos + 3 * id);
+  return toVec(d_->xpos + 3 * id) - rotationAt(d_->xmat + 9 * id) * model.bodies[body].linkOrigin;
 }
 
-Vec3 MujocoWorld::velocityOf(int body) const {
+Vec3 MujocoWorld::armOf(int body, const Vec3& point) const {
+  return point - toVec(d_->subtree_com + 3 * m_->body_rootid[body]);
+}
+
+Vec3 MujocoWorld::velocityOf(int body, const Vec3& point) const {
   const mjtNum* spatial = d_->cvel + 6 * body;  // rotation, translation at the tree's centre of mass
-  return toVec(spatial + 3) + toVec(spatial).cross(armOf(body));
+  return toVec(spatial + 3) + toVec(spatial).cross(armOf(body, point));
 }
 
 // ---- contacts ----
@@ -393,12 +407,14 @@ bool MujocoWorld::passMotors(const State& state) {
   return other;
 }
 
-/// The drag of the medium on a box of the body's inertia (MuJoCo's documentation, "Fluid forces", inertia model): force
-/// and torque at the centre of mass, world frame.
-void MujocoWorld::addDrag(const Model& model, int body, Vec3& force, Vec3& torque) const {
+/// The drag of the medium on a box of the inertia of one of MuJoCo's bodies (MuJoCo's documentation, "Fluid forces",
+/// inertia model).
+MujocoWorld::Wrench MujocoWorld::dragOf(const Model& model, int body) const {
+  if (m_->body_mass[body] < mjMINVAL) return {};
   const engine::WorldParameters::Mujoco& medium = model.parameters.mujoco;
-  const Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>> axes(d_->ximat + 9 * body);
-  const Vec3 v = axes.transpose() * (velocityOf(body) - medium.wind);
+  const auto axes = rotationAt(d_->ximat + 9 * body);
+  const Vec3 centre = toVec(d_->xipos + 3 * body);
+  const Vec3 v = axes.transpose() * (velocityOf(body, centre) - medium.wind);
   const Vec3 w = axes.transpose() * toVec(d_->cvel + 6 * body);
   const Vec3& e = boxes_[static_cast<std::size_t>(body)];  // edges
   const double diameter = e.sum() / 3, viscosity = medium.viscosity, density = medium.density;
@@ -408,8 +424,23 @@ void MujocoWorld::addDrag(const Model& model, int body, Vec3& force, Vec3& torqu
     f[i] -= 0.5 * density * a * b * std::abs(v[i]) * v[i];
     t[i] -= density * e[i] * (a * a * a * a + b * b * b * b) / 64 * std::abs(w[i]) * w[i];
   }
-  force += axes * f;
-  torque += axes * t;
+  const Vec3 force = axes * f;
+  return {axes * t + armOf(body, centre).cross(force), force};
+}
+
+bool MujocoWorld::isFree(int body) const {
+  return m_->body_jntnum[body] > 0 && m_->jnt_type[m_->body_jntadr[body]] == mjJNT_FREE;
+}
+
+/// That of a free body comes with its joint.
+void MujocoWorld::addBodyDamping(const Model& model, Index body, Vec3& force, Vec3& torque) const {
+  const engine::Body& b = model.bodies[body];
+  const int id = bodyId_[body];
+  if ((b.linearDamping == 0 && b.angularDamping == 0) || isFree(id)) return;
+  const Vec3 origin = toVec(d_->xpos + 3 * id);
+  const Vec3 drag = -b.linearDamping * velocityOf(id, origin);
+  force += drag;
+  torque += (origin - centreOf(model, body)).cross(drag) - b.angularDamping * toVec(d_->cvel + 6 * id);
 }
 
 /// Forces on bodies as forces along the degrees of freedom. MuJoCo 2.2.2 would do so with a Jacobian of the whole world
@@ -424,10 +455,17 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
     if (body < 0) continue;
     Vec3 force = state.bodies[i].force, torque = state.bodies[i].torque;
     if (!model.bodies[i].gravity) force -= model.bodies[i].mass * model.parameters.gravity;
-    if (medium) addDrag(model, body, force, torque);
+    addBodyDamping(model, i, force, torque);
     if (force.isZero(0) && torque.isZero(0)) continue;
     any = true;
-    wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body).cross(force), force};
+    wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body, centreOf(model, i)).cross(force), force};
+  }
+  const auto addDrag = [&](int body) { wrenches_[static_cast<std::size_t>(body)] += dragOf(model, body); };
+  for (Index i = 0; medium && i < trees_.links.size(); ++i) {
+    if (trees_.links[i].body == kNone || origins_[i].mujocoBody < 0) continue;
+    any = true;
+    addDrag(origins_[i].mujocoBody);
+    for (const int part : origins_[i].parts) addDrag(part);
   }
   if (!any) return;
   // From the leaves to the roots: all wrenches of a tree are about its centre of mass.
@@ -437,8 +475,7 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
     for (int dof = first; dof < first + m_->body_dofnum[body]; ++dof)
       d_->qfrc_applied[dof] += toVec(d_->cdof + 6 * dof).dot(own.torque) + toVec(d_->cdof + 6 * dof + 3).dot(own.force);
     Wrench& parent = wrenches_[static_cast<std::size_t>(m_->body_parentid[body])];
-    parent.torque += own.torque;
-    parent.force += own.force;
+    parent += own;
   }
 }
 

@@ -56,10 +56,19 @@ class MujocoWorld {
   /// Passes the motors' forces. Returns true when a motor began or ceased to act: prepare() has to run again.
   bool passMotors(const engine::State& state);
   void applyForces(const engine::Model& model, const engine::State& state);
-  void addDrag(const engine::Model& model, int body, Vec3& force, Vec3& torque) const;
-  /// The centre of mass of one of MuJoCo's bodies, relative to that of its tree, and its velocity; world frame.
-  Vec3 armOf(int body) const;
-  Vec3 velocityOf(int body) const;
+  /// A force, and its torque about the centre of mass of the tree; world frame.
+  struct Wrench {
+    Vec3 torque = Vec3::Zero(), force = Vec3::Zero();
+    void operator+=(const Wrench& w) { torque += w.torque, force += w.force; }
+  };
+  bool isFree(int body) const;
+  void addBodyDamping(const engine::Model& model, Index body, Vec3& force, Vec3& torque) const;
+  Wrench dragOf(const engine::Model& model, int body) const;
+  /// Centre of mass of a body of the model, all its parts together; world frame.
+  Vec3 centreOf(const engine::Model& model, Index body) const;
+  /// A point of one of MuJoCo's bodies, relative to the centre of mass of its tree, and its velocity; world frame.
+  Vec3 armOf(int body, const Vec3& point) const;
+  Vec3 velocityOf(int body, const Vec3& point) const;
   void passSpeeds(const engine::State& state);
   void applyControls(const engine::State& state);
   /// Writes the controllers' numbers to the actuators.
@@ -80,6 +89,7 @@ class MujocoWorld {
     int mujocoBody = -1;
     std::array<int, 3> mujocoJoints{-1, -1, -1};
     std::vector<int> joints;  ///< all of the link, in MuJoCo's order
+    std::vector<int> parts;   ///< MuJoCo's bodies beside its own, for its further parts
   };
 
   Trees trees_;                       ///< kNone as body and joint of a link: its tree is gone
@@ -100,15 +110,11 @@ class MujocoWorld {
   std::vector<int> actuators_;                          ///< by MuJoCo's joint: its actuator; empty: there are none
   std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that joints connect, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
-  /// A force, and its torque about the centre of mass of the tree.
-  struct Wrench {
-    Vec3 torque = Vec3::Zero(), force = Vec3::Zero();
-  };
-  std::vector<Wrench> wrenches_;     ///< of applyForces(), by MuJoCo's body
-  std::vector<Vec3> boxes_;          ///< by MuJoCo's body: edges of the box that has its inertia [m]
-  std::vector<std::uint8_t> stale_;  ///< of take(), by link: its tree has to be written
-  bool prepared_ = false;            ///< contacts and constraints are those of the present coordinates
-  std::vector<int> listed_;          ///< MuJoCo's contacts, in the order of the last detect()
+  std::vector<Wrench> wrenches_;                        ///< of applyForces(), by MuJoCo's body
+  std::vector<Vec3> boxes_;                             ///< by MuJoCo's body: edges of the box that has its inertia [m]
+  std::vector<std::uint8_t> stale_;                     ///< of take(), by link: its tree has to be written
+  bool prepared_ = false;    ///< contacts and constraints are those of the present coordinates
+  std::vector<int> listed_;  ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

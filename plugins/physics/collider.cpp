@@ -69,6 +69,9 @@ void Collider::describe(Description<Collider>& d) {
       .unit("m")
       .min(0)
       .doc("For MuJoCo: part of that distance without force.");
+  d.property("mujocoPart", &C::mujocoPart, &C::setMujocoPart)
+      .min(0)
+      .doc("For MuJoCo: which of its body's parts it belongs to (addPart), from 0.");
   d.abstract();
 }
 

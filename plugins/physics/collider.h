@@ -109,6 +109,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void setMujocoMargin(double v) { mujoco_.margin = v, applyMujoco(); }
   double mujocoGap() const { return mujoco_.gap; }
   void setMujocoGap(double v) { mujoco_.gap = v, applyMujoco(); }
+  int mujocoPart() const { return mujoco_.part; }
+  void setMujocoPart(int n) { mujoco_.part = n, applyMujoco(); }
   void applyMujoco();
   bool isStaticInWorld() const { return !outer_ && !body_; }
 

@@ -53,7 +53,8 @@ void Joint::describe(Description<Joint>& d) {
        "Maximum force or torque of the motor; 0: no motor.");
   axis("Armature", &J::set<P::armature>, &J::get<P::armature>, "kg m^2 or kg",
        "Inertia of the motor's rotor about the axis.");
-  axis("Damping", &J::set<P::damping>, &J::get<P::damping>, "N m s or N s/m", "Force per velocity, against it.");
+  axis("Damping", &J::set<P::damping>, &J::get<P::damping>, "N m s or N s/m",
+       "Force per velocity, against it; axis 0 of a ball joint is any direction.");
   axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
        "Largest force of dry friction; of an axis with a controller.");
 
@@ -113,6 +114,12 @@ void Joint::onUnlink() {
 
 int Joint::axes() const { return engine::axesOf(jointType()); }
 
+void Joint::expectAxis(int axis, JointParameter p) const {
+  // The damping of a ball joint acts about all directions.
+  if (axis == 0 && p == JointParameter::damping && jointType() == engine::JointType::ball) return;
+  expectAxis(axis);
+}
+
 void Joint::expectAxis(int axis) const {
   if (axis >= 0 && axis < axes()) return;
   const std::string range = axes() == 0   ? "no axis: this joint has neither motor nor stops"
@@ -122,7 +129,6 @@ void Joint::expectAxis(int axis) const {
 }
 
 void Joint::setParameter(JointParameter p, int axis, double v) {
-  if (axis < 0 || axis >= axes()) return;
   if (world()) world()->setParameter(joint_, p, axis, v);
 }
 

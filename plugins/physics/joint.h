@@ -74,16 +74,17 @@ class Joint : public PhysicsObject, public IJoint {
   double angleRateDeg(int axis) const { return radToDeg(angleRate(axis)); }
   /// Throws Error unless the joint has the axis.
   void expectAxis(int axis) const;
+  void expectAxis(int axis, engine::JointParameter p) const;
 
  private:
   template <engine::JointParameter P>
   void set(int axis, double v) {
-    expectAxis(axis);
+    expectAxis(axis, P);
     setParameter(P, axis, v);
   }
   template <engine::JointParameter P>
   double get(int axis) {
-    expectAxis(axis);
+    expectAxis(axis, P);
     return parameter(P, axis);
   }
   template <engine::JointParameter P>

@@ -26,6 +26,14 @@ void RigidBody::describe(Description<RigidBody>& d) {
       .doc(
           "Origin of its link's frame, in the body's frame, for engines in coordinates of joints: the point of a free "
           "body whose place and velocity are its coordinates.");
+  d.property("linearDamping", &B::linearDamping, &B::setLinearDamping)
+      .unit("N s/m")
+      .min(0)
+      .doc("Force per velocity against the motion in the world, at the origin of its link's frame.");
+  d.property("angularDamping", &B::angularDamping, &B::setAngularDamping)
+      .unit("N m s")
+      .min(0)
+      .doc("Torque per angular velocity against the rotation in the world.");
   d.property("gravityOn", &B::usesGravity, &B::useGravity).doc("The world's gravity acts on it.");
 
   const auto solid = [&](const char* shape, auto set, auto setTotal, std::vector<std::string> lengths) {
@@ -61,6 +69,13 @@ void RigidBody::describe(Description<RigidBody>& d) {
       .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]"})
       .surplusIgnored()
       .doc("Sets mass and inertia. The centre must be 0; another one is ignored, with a warning in the log.");
+  d.method("addPart", &B::addPart)
+      .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]", "w x y z"})
+      .doc(
+          "Names a part of which the body consists, in the body's frame, with its inertia about its own centre: for "
+          "MuJoCo, whose drag and contacts depend on parts. The first one has the joints. The body's mass stays; parts "
+          "have shares of it, until its distribution is changed. The quaternion turns to its principal axes, where "
+          "several fit.");
   d.method("translateMass", &B::translateMass)
       .parameters({"offset [m]"})
       .doc("Accepted for old scenes; has no effect, as in the installed base.");
@@ -89,6 +104,8 @@ void RigidBody::onLink() {
   world_->setMass(body_, mass_);
   world_->setLinkOrigin(body_, linkOrigin_);
   world_->setConnector(body_, connector_);
+  world_->setParts(body_, parts_);
+  world_->setDamping(body_, linearDamping_, angularDamping_);
   world_->setGravityMode(body_, gravity_);
 }
 
@@ -166,6 +183,12 @@ void RigidBody::setConnector(bool on) {
   if (world_) world_->setConnector(body_, on);
 }
 
+void RigidBody::setDamping(double linear, double angular) {
+  linearDamping_ = linear;
+  angularDamping_ = angular;
+  if (world_) world_->setDamping(body_, linear, angular);
+}
+
 void RigidBody::setLinkOrigin(const Vec3& origin) {
   linkOrigin_ = origin;
   if (world_) world_->setLinkOrigin(body_, origin);
@@ -189,7 +212,11 @@ void RigidBody::applyMass(const engine::Mass& mass) {
       throw Error(fmt::format("{}: cannot set the mass; it stays {:f} kg", where(), mass_.mass), e);
     }
   }
+  const bool scaled = mass.inertia.isApprox(mass.mass / mass_.mass * mass_.inertia, 1e-9);
   mass_ = mass;
+  if (scaled || parts_.empty()) return;
+  parts_.clear();
+  if (world_) world_->setParts(body_, parts_);
 }
 
 void RigidBody::add(const engine::Mass& part, const std::vector<double>& matrix) {
@@ -220,17 +247,34 @@ void RigidBody::setMass(double m) {
   applyMass(scaled);
 }
 
+namespace {
+Mat3 symmetric(const Vec3& diagonal, const Vec3& products) {
+  Mat3 m = diagonal.asDiagonal();
+  m(0, 1) = m(1, 0) = products.x();
+  m(0, 2) = m(2, 0) = products.y();
+  m(1, 2) = m(2, 1) = products.z();
+  return m;
+}
+}  // namespace
+
+void RigidBody::addPart(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products,
+                        const std::vector<double>& axes) {
+  if (!(m >= 0)) throw Error(fmt::format("{}: expected the mass of a part, at least 0 kg, found {}", where(), m));
+  std::array<double, 4> quaternion{};
+  physics::take(quaternion, axes, where());
+  if (!(std::abs(Eigen::Vector4d(quaternion.data()).norm() - 1) < 1e-6))
+    throw Error(fmt::format("{}: expected a quaternion of length 1 for the axes of a part", where()));
+  parts_.push_back({m, center, symmetric(diagonal, products), rotationOf(quaternion)});
+  if (world_) world_->setParts(body_, parts_);
+}
+
 void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products) {
   if (!center.isZero(1e-9))
     kernel().log().warning(
         "{}: setMassParameters was given the centre ({}, {}, {}); a body's centre of mass is its origin, so 0 was "
         "taken. Move the transform there.",
         where(), center.x(), center.y(), center.z());
-  engine::Mass mass{m, Vec3::Zero(), Mat3(diagonal.asDiagonal())};
-  mass.inertia(0, 1) = mass.inertia(1, 0) = products.x();
-  mass.inertia(0, 2) = mass.inertia(2, 0) = products.y();
-  mass.inertia(1, 2) = mass.inertia(2, 1) = products.z();
-  applyMass(mass);
+  applyMass({m, Vec3::Zero(), symmetric(diagonal, products)});
 }
 
 bool RigidBody::takeUnplaced() {

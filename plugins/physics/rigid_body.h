@@ -100,6 +100,13 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   }
   void setMass(double m);
   void setMassParameters(double m, const Vec3& center, const Vec3& diagonal, const Vec3& products);
+  double linearDamping() const { return linearDamping_; }
+  double angularDamping() const { return angularDamping_; }
+  void setLinearDamping(double v) { setDamping(v, angularDamping_); }
+  void setAngularDamping(double v) { setDamping(linearDamping_, v); }
+  void setDamping(double linear, double angular);
+  void addPart(double mass, const Vec3& center, const Vec3& diagonal, const Vec3& products,
+               const std::vector<double>& axes);
   void translateMass(const Vec3&) {}
 
   Vec3 position() const { return state().position; }
@@ -122,6 +129,8 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   Vec3 pendingShift_ = Vec3::Zero();  ///< the part of it that takeShift() has not returned yet [m]
   bool connector_ = false;            ///< see Body::connector
   Vec3 linkOrigin_ = Vec3::Zero();    ///< see Body::linkOrigin
+  std::vector<engine::Part> parts_;   ///< see Body::parts
+  double linearDamping_ = 0, angularDamping_ = 0;
   bool gravity_ = true;
   bool placed_ = false;  ///< the body sleeps and its transform is up to date
   unsigned faults_ = 0;  ///< resets

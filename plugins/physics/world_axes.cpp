@@ -34,6 +34,7 @@ auto* parameterOf(J& j, M& motors, JointParameter p, int axis) {
 
 /// Suspension parameters belong to the first axis of hinge2.
 bool hasParameter(const Joint& j, JointParameter p, int axis) {
+  if (j.type == JointType::ball) return p == JointParameter::damping && axis == 0;
   const bool suspension = p == JointParameter::suspensionErp || p == JointParameter::suspensionCfm;
   return axis >= 0 && axis < axesOf(j.type) && (!suspension || (j.type == JointType::hinge2 && axis == 0));
 }
@@ -185,10 +186,30 @@ void WorldModel::applyControls() {
 }
 
 void WorldModel::applyDamping() {
-  for (Index i = 0; i < model_.joints.size(); ++i)
-    for (int axis = 0; axis < axesOf(model_.joints[i].type); ++axis)
-      if (const Joint& j = model_.joints[i]; j.axes[axis].damping > 0 && acts(j))
-        addAlong(j, axis, -j.axes[axis].damping * exactRate(i, axis));
+  for (Index i = 0; i < model_.joints.size(); ++i) {
+    const Joint& j = model_.joints[i];
+    for (int axis = 0; axis < axesOf(j.type); ++axis)
+      if (j.axes[axis].damping > 0 && acts(j)) addAlong(j, axis, -j.axes[axis].damping * exactRate(i, axis));
+    if (j.type != JointType::ball || j.axes[0].damping == 0 || !acts(j)) continue;
+    const Vec3 torque = j.axes[0].damping * (angularVelocity(stateAt(j.b)) - angularVelocity(stateAt(j.a)));
+    state_.bodies[j.a].torque += torque;
+    if (j.b != kNone) state_.bodies[j.b].torque -= torque;
+  }
+}
+
+void WorldModel::applyBodyDamping(double dt) {
+  for (Index i = 0; i < model_.bodies.size(); ++i) {
+    const engine::Body& b = model_.bodies[i];
+    DynamicState& s = state_.bodies[i];
+    if ((b.linearDamping == 0 && b.angularDamping == 0) || !s.awake) continue;
+    const Vec3 arm = s.rotation * b.linkOrigin;
+    const Vec3 force =
+        -b.linearDamping / (1 + dt * b.linearDamping / b.mass) * (s.linearVelocity + s.angularVelocity.cross(arm));
+    const Mat3 slowed = b.inertia + dt * b.angularDamping * Mat3::Identity();
+    const Vec3 spin = s.rotation.transpose() * s.angularVelocity;
+    s.force += force;
+    s.torque += arm.cross(force) - b.angularDamping * (s.rotation * slowed.inverse() * b.inertia * spin);
+  }
 }
 
 void WorldModel::applySprings() {

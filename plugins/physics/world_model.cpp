@@ -204,6 +204,23 @@ void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
   ++model_.dynamics;
 }
 
+void WorldModel::setParts(BodyHandle body, const std::vector<engine::Part>& parts) {
+  for (const engine::Part& p : parts)
+    if (!(p.mass >= 0) || !inRange(&p.mass, 1) || !inRange(p.center) || !inRange(p.inertia.data(), 9)) return;
+  model_.bodies[bodies_[body]].parts = parts;
+  ++model_.dynamics;
+}
+
+void WorldModel::setDamping(BodyHandle body, double linear, double angular) {
+  const double numbers[] = {linear, angular};
+  if (!inRange(numbers, 2) || !(linear >= 0) || !(angular >= 0)) return;
+  engine::Body& b = model_.bodies[bodies_[body]];
+  b.linearDamping = linear;
+  b.angularDamping = angular;
+  bodiesDamped_ |= linear > 0 || angular > 0;
+  ++model_.dynamics;
+}
+
 void WorldModel::setConnector(BodyHandle body, bool on) {
   model_.bodies[bodies_[body]].connector = on;
   ++model_.structure;
@@ -457,6 +474,7 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   if (!engine.controls()) applyControls();
   if (!engine.damps() && damped_) applyDamping();
   if (!engine.springs() && sprung_) applySprings();
+  if (!engine.dampsBodies() && bodiesDamped_) applyBodyDamping(dt);
   if (turningAt_ != model_.structure) listTurning();
   if (countedAt_ != poses_) countTurns();  // poses were set since the last step
   engine::Step step{model_, state_, contacts, rounded(dt), {}};

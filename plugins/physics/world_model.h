@@ -124,8 +124,12 @@ class WorldModel {
   void setEnabled(BodyHandle body, bool on);
   /// False: the body sleeps.
   bool enabled(BodyHandle body) const { return of(body).awake; }
+  /// Sets Body::linearDamping and angularDamping. Numbers below 0 or not finite are ignored.
+  void setDamping(BodyHandle body, double linear, double angular);
   /// See Body::connector.
   void setConnector(BodyHandle body, bool on);
+  /// See Body::parts. Numbers that are not finite or too large, and masses below 0, are ignored with the whole list.
+  void setParts(BodyHandle body, const std::vector<engine::Part>& parts);
   /// See Body::linkOrigin.
   void setLinkOrigin(BodyHandle body, const Vec3& origin);
   /// False: gravity does not act on the body.
@@ -271,6 +275,8 @@ class WorldModel {
   /// Add the forces of controllers and of damping to those on the bodies.
   void applyControls();
   void applyDamping();
+  /// Adds the damping of bodies, implicitly: it slows bodies down and never turns them back, however strong it is.
+  void applyBodyDamping(double dt);
   void applySprings();
   /// False for a joint whose bodies sleep: forces on them would pile up.
   bool acts(const engine::Joint& joint) const;
@@ -327,6 +333,7 @@ class WorldModel {
   std::uint64_t poses_ = 1;                              ///< changes when the angle of a joint may have changed
   std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
   bool damped_ = false;                                  ///< an axis has damping
+  bool bodiesDamped_ = false;                            ///< a body has damping
   bool sprung_ = false;                                  ///< an axis has a spring
   /// The joints that count turns, and their bodies; valid for turningAt_, a version of the structure.
   struct Turning {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+
 #include "spark/access.h"
 
 namespace spark::mjcf {
@@ -28,6 +30,19 @@ Leaf& makeRigidBody(Node& transform, const PlacedBody& b, double share) {
 
 void setPose(Leaf& body, const Pose& world) {
   static_cast<IRigidBody*>(body.requireAs(IRigidBody::kInterface))->setPose(world);
+}
+
+/// Bodies that are fixed to one that moves are its parts.
+void addParts(Leaf& body, const PlacedBody& b) {
+  if (b.parts.size() < 2 && b.parts.front().axes.isIdentity(0)) return;
+  for (const engine::Part& part : b.parts) {
+    const Vec3 c = part.center - b.mass.center;
+    const Mat3& i = part.inertia;
+    const Eigen::Quaterniond q(part.axes);
+    callMethod(body, "addPart",
+               List{part.mass, c.x(), c.y(), c.z(), i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2),
+                    List{q.w(), q.x(), q.y(), q.z()}});
+  }
 }
 
 std::string bodyPath(const std::string& transform) { return "../../" + transform + "/body"; }
@@ -71,6 +86,7 @@ void BodyBuilder::makeBody(PlacedBody& p) {
   try {
     Leaf& body = makeRigidBody(*p.node, p, 1);
     setProperty(body, "linkOrigin", toList(Vec3(-p.mass.center)));
+    addParts(body, p);
     setPose(body, bodyPose(p));
     compensateGravity(p, body);
   } catch (const Error& e) {
@@ -93,6 +109,9 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
   const std::vector<Joint>& joints = p.body->joints;
   if (joints.front().kind == JointKind::free) {
     c_.freeJoints.insert(joints.front().name);
+    Leaf& body = *p.node->child("body");
+    setProperty(body, "linearDamping", c_.flags.passive ? joints.front().damping : 0.0);
+    setProperty(body, "angularDamping", c_.flags.passive ? joints.front().damping : 0.0);
     return;
   }
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
@@ -120,6 +139,7 @@ void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, co
     callMethod(made.leaf(), "attach", List{"../body", parent});
     if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
     if (j.kind != JointKind::ball) setAxis(made, j, p.world, c_.flags);
+    if (j.kind == JointKind::ball) made.setParameter(JointParameter::damping, 0, c_.flags.passive ? j.damping : 0);
     if (!c_.flags.passive && j.damping > 0)
       c_.unsupported.add(j.from,
                          "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "

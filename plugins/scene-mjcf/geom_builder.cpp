@@ -105,6 +105,7 @@ void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
     throw Error(fmt::format("there are two geoms '{}'", g.name));
   setShape(collider, g.shape, p.carrier == 0 ? compose(p.world, g.pose) : c_.inNode(p, g.pose));
   setContact(collider, g);
+  setProperty(collider, "mujocoPart", p.part);
 }
 
 void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {

@@ -60,6 +60,7 @@ struct Body {
   int parent = -1;                                   ///< index; -1: this is the world
   Pose pose;                                         ///< in its parent
   engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< inertia about its centre of mass, body axes; mass 0: none
+  Mat3 inertiaAxes = Mat3::Identity();               ///< principal axes, where inertial or geom give them
   bool isFrameOpen = false;                          ///< its frame is where its centre of mass is
   bool hasInertial = false;                          ///< an inertial element says so
   double gravityCompensation = 0;                    ///< part of the gravity that does not act on it

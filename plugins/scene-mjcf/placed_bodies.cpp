@@ -34,8 +34,12 @@ void PlacedBodies::place(std::size_t index, const Body& b) {
   // Masses of parts move to the carrier.
   PlacedBody& carrier = carrierOf(p);
   const Mat3& r = p.inCarrier.rotation;
-  carrier.mass = physics::together(
-      carrier.mass, {b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()});
+  const engine::Mass part{b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()};
+  carrier.mass = physics::together(carrier.mass, part);
+  if (&p == &carrier || part.mass > 0 || !b.geoms.empty()) {
+    p.part = static_cast<int>(carrier.parts.size());
+    carrier.parts.push_back({part.mass, part.center, part.inertia, r * b.inertiaAxes});
+  }
   carrier.compensatedMass += b.gravityCompensation * b.mass.mass;
   if (!b.name.empty() && !byName_.emplace(b.name, &p).second)
     throw b.from.error(fmt::format("there are two bodies '{}'", b.name));

@@ -16,10 +16,12 @@ struct PlacedBody {
   Pose inCarrier;                                    ///< of the body's frame
   Pose world;                                        ///< of the body's frame, when built
   engine::Mass mass{0, Vec3::Zero(), Mat3::Zero()};  ///< of a carrier: all of it, centre in its frame
-  double compensatedMass = 0;                        ///< of a carrier: the part of its mass that gravity spares
-  int above = 0;                                     ///< of a carrier: the carrier that its joints connect it to
-  Node* node = nullptr;                              ///< of a carrier: its transform, once made
-  std::vector<Node*> colliders;                      ///< of the body's own geoms, once made
+  std::vector<engine::Part> parts;  ///< of a carrier: its own, and the bodies fixed to it; in its frame
+  int part = 0;                     ///< index in the carrier's
+  double compensatedMass = 0;       ///< of a carrier: the part of its mass that gravity spares
+  int above = 0;                    ///< of a carrier: the carrier that its joints connect it to
+  Node* node = nullptr;             ///< of a carrier: its transform, once made
+  std::vector<Node*> colliders;     ///< of the body's own geoms, once made
 };
 
 /// All bodies of a model, which must outlive them.

@@ -199,6 +199,7 @@ void Reader::inertial(const Element& e, const Scope& scope) {
   }
   b.mass.center = scope.frame.position + scope.frame.rotation * b.mass.center;
   b.mass.inertia = scope.frame.rotation * b.mass.inertia * scope.frame.rotation.transpose();
+  b.inertiaAxes = scope.frame.rotation * turn;
   b.hasInertial = true;
   a.finish();
 }
@@ -244,7 +245,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   limit.read(a, "limited", "range");
   force.read(a, "actuatorfrclimited", "actuatorfrcrange");
   if (j.kind == JointKind::ball || j.kind == JointKind::free) {
-    for (const char* name : {"range", "armature", "damping", "frictionloss", "stiffness"})
+    for (const char* name : {"range", "armature", "frictionloss", "stiffness"})
       if (a.has(name))
         unsupported_.add(e, fmt::format("the attribute '{}' of a {} joint is not supported", name, kind));
   } else if (const auto range = compiler_.limit(e, "range", limit)) {
@@ -309,8 +310,15 @@ void Reader::finishMasses() {
     const std::string& fromGeoms = compiler_.inertiaFromGeom();
     if (fromGeoms == "true" || (fromGeoms == "auto" && !b.hasInertial)) {
       b.mass = {0, Vec3::Zero(), Mat3::Zero()};
-      for (const Geom& g : b.geoms)
-        if (g.mass) b.mass = physics::together(b.mass, *g.mass);
+      b.inertiaAxes.setIdentity();
+      for (const Geom& g : b.geoms) {
+        if (!g.mass) continue;
+        if (b.mass.mass == 0)
+          b.inertiaAxes = g.pose.rotation;
+        else
+          b.inertiaAxes.setIdentity();
+        b.mass = physics::together(b.mass, *g.mass);
+      }
     }
     compiler_.adjust(b.mass);
   }
