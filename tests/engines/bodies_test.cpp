@@ -46,6 +46,43 @@ TEST_CASE("a torque-free body that spins about its axis of symmetry keeps its an
       {&EngineKind::rotation});
 }
 
+TEST_CASE("damping slows a free body, and does not turn it back however strong it is") {
+  withEngines([](EngineWorld& w) {
+    w.setGravity(0);
+    const BodyHandle weak = w.body({0, 0, 0}, 2), strong = w.body({9, 0, 0}, 2);
+    w.world.setDamping(weak, 3, 0.2);
+    w.world.setDamping(strong, 1e6, 1e6);
+    for (const BodyHandle b : {weak, strong}) {
+      w.world.setLinearVelocity(b, {1, 0, 0});
+      w.world.setAngularVelocity(b, {0, 0, 2});
+    }
+    w.run(w.dt);
+    CHECK(w.velocity(strong).x() == Approx(0).margin(1e-3));
+    w.run(0.5 - w.dt);
+    CHECK(w.velocity(weak).x() == Approx(std::exp(-3.0 / 2 * 0.5)).epsilon(0.02));
+    CHECK(w.velocity(strong).isZero(1e-9));
+    if (!w.kind.rotation) return;
+    CHECK(w.spin(weak).z() == Approx(2 * std::exp(-0.2 / 0.1 * 0.5)).epsilon(0.02));
+    CHECK(w.spin(strong).isZero(1e-9));
+  });
+}
+
+TEST_CASE("damping of a body acts at the origin of its link's frame") {
+  withEngines(
+      [](EngineWorld& w) {
+        w.setGravity(0);
+        const BodyHandle b = w.body({0, 0, 0});
+        w.world.setLinkOrigin(b, {0.5, 0, 0});
+        w.world.setDamping(b, 0.5, 0);
+        w.world.setLinearVelocity(b, {0, 1, 0});
+        w.run(w.dt);
+        // A force of -0.5 N in y, 0.5 m from the centre: a torque of -0.25 Nm on 0.1 kg m^2.
+        CHECK(w.velocity(b).y() == Approx(1 - 0.5 * w.dt).epsilon(1e-3));
+        CHECK(w.spin(b).z() == Approx(-2.5 * w.dt).epsilon(0.03));
+      },
+      {&EngineKind::rotation});
+}
+
 TEST_CASE("a body that diverges is put back at rest and reported once, and the others continue") {
   withEngines([](EngineWorld& w) {
     w.setGravity(0);

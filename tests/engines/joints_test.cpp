@@ -226,6 +226,24 @@ TEST_CASE("damping slows an axis, dry friction holds it, and armature adds inert
       {&EngineKind::joints, &EngineKind::armature});
 }
 
+TEST_CASE("the damping of a ball joint acts about all directions, that of a body in the world") {
+  for (const bool ofBody : {false, true})
+    for (const bool childFirst : {false, true})
+      withPairs([&](EngineWorld& w, const Pair& p) {
+        CAPTURE(ofBody, childFirst);
+        const JointHandle j =
+            w.joint(JointType::ball, childFirst ? p.child : p.parent, childFirst ? p.parent : p.child, {0, 0, 0});
+        if (ofBody)
+          w.world.setDamping(p.child, 0, 0.2);
+        else
+          w.world.setParameter(j, JointParameter::damping, 0, 0.2);
+        const Vec3 spin(1, -2, 0.5);
+        w.world.setAngularVelocity(p.child, spin);
+        w.run(0.5);
+        CHECK((w.spin(p.child) - spin * std::exp(-0.2 / 0.1 * 0.5)).norm() < 0.02 * spin.norm());
+      });
+}
+
 TEST_CASE("a controller moves each axis of a joint to the target, with either order of bodies and with the world") {
   for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
     for (const int order : {0, 1, 2, 3})
