@@ -42,10 +42,10 @@ def agree():
 
 
 def named():
-    """A model that differs has a row that says why, and most differences are named in the log as well."""
+    """A model that differs has a row that says why, and the difference is named in the log, or MuJoCo's own when it starts a rounding beside."""
     differ = [r for r in measure() if r[2] == "DIFFERS"]
     unexplained, silent = [r[0] for r in differ if not r[6]], [r[0] for r in differ if not r[5]]
-    measured = f"{len(differ)} differ; without a row in expected.txt: {', '.join(unexplained) or 'none'}; not named in the log: {', '.join(silent) or 'none'}"
+    measured = f"{len(differ)} differ; without a row in expected.txt: {', '.join(unexplained) or 'none'}; neither named in the log nor MuJoCo's own rounding: {', '.join(silent) or 'none'}"
     return measured, FAIL if unexplained else OPEN if silent else PASS
 
 
