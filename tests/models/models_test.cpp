@@ -2,8 +2,8 @@
 //
 // A model is loaded by libmujoco and by the importer, with MujocoEngine, and moves for 1 s in steps of its own length.
 // All controls are 0.3. At 0.1, 0.5 and 1 s the coordinates of all joints, and the centres of mass and rotations of all
-// bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names. A reason that begins with "rounding: "
-// is checked: MuJoCo alone does not agree with itself when it starts 1e-15 beside.
+// bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names. A reason that begins with "rounding:
+// " is checked: MuJoCo alone does not agree with itself when it starts 1e-15 beside.
 //
 // With the other engines, whose laws of contacts and integration are not MuJoCo's, they must agree to 5 mm and 5 mrad
 // after 0.1 s, or engines.txt says why not.
