@@ -117,6 +117,17 @@ TEST_CASE("a wheel rolls at its motor's speed, keeps a locked steering angle, an
   });
 }
 
+TEST_CASE("an axis of a wheel that becomes parallel to the other moves it aside") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    for (const int axis : {0, 1}) {
+      const JointHandle j = w.joint(JointType::hinge2, p.child, p.parent, {0, 0, 0.5});
+      w.world.setAxis(j, axis, w.world.axis(j, 1 - axis), 0);
+      CHECK(std::abs(w.world.axis(j, 0).dot(w.world.axis(j, 1))) < 1e-9);
+      w.world.destroyJoint(j);
+    }
+  });
+}
+
 TEST_CASE("an angular motor drives its axes") {
   withPairs(
       [](EngineWorld& w, const Pair& p) {

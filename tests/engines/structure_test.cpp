@@ -42,6 +42,17 @@ struct Traffic {
 
 }  // namespace
 
+TEST_CASE("a destroyed space leaves the model with the next step") {
+  withEngines([](EngineWorld& w) {
+    const physics::SpaceHandle space = w.world.createSpace(physics::SpaceHandle::none);
+    w.run(w.dt);
+    const std::size_t before = w.world.model().spaces.size();
+    w.world.destroySpace(space);
+    w.run(w.dt);
+    CHECK(w.world.model().spaces.size() == before - 1);
+  });
+}
+
 TEST_CASE("bodies, geoms and joints can be created and destroyed between any two steps") {
   withEngines([](EngineWorld& w) {
     Traffic t(w);

@@ -222,10 +222,15 @@ TEST_CASE("Removing a node destroys its children first, from first to last") {
   Core core;
   std::string order;
   Thing& a = core.make("a");
-  for (const char* n : {"b", "c"}) core.make(a, n).atEnd = [&order](Thing& t) { order += t.name(); };
-  a.atEnd = [&order](Thing& t) { order += t.name(); };
+  const auto note = [&order](Thing& t) { order += t.name(); };
+  for (const auto& [name, below] : {std::pair{"b", "d"}, std::pair{"c", "e"}}) {
+    Thing& child = core.make(a, name);
+    child.atEnd = note;
+    core.make(child, below).atEnd = note;
+  }
+  a.atEnd = note;
   core.top->remove(a);
-  CHECK(order == "bca");
+  CHECK(order == "dbeca");
   CHECK_THROWS_AS(core.top->remove(*core.top), Error);
 }
 

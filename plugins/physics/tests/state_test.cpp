@@ -29,6 +29,7 @@ struct Heap : PhysicsHost {
     call(hinge, "setAnchor", {0.0, 0.0, 1.0});
     call(hinge, "setMaxMotorForce", {0, 2.0});
     call(hinge, "setAngularMotorVelocity", {0, 30.0});
+    thing("last", {9, 0, 9});  // its state follows the joint's
   }
   std::uint64_t hash() const { return stateHash(scene); }
   std::string saved() const {
