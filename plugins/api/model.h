@@ -228,7 +228,7 @@ struct alignas(64) Joint {
   /// A is the orthonormal frame of (axis 1, axis 2) in a, B that of (axis 2, axis 1) in b. All zeros: a fixed joint
   /// that was never set, whose rotation drifts.
   std::array<double, 4> initialRotationA{1, 0, 0, 0};
-  std::array<JointAxis, 3> axes;  ///< only as many as the type has axes are used; ball and fixed joints have none
+  std::array<JointAxis, 3> axes;  ///< only as many as the type has axes are used; ball joints have damping alone
   /// Joint axes in a and in b. Hinge and slider: the axis is [0] of both. Universal and hinge2: axis 1 is axisA[0],
   /// axis 2 is axisB[1]. Angular motor: axis i is axisA[i] in the frame that `frame[i]` names; Euler: [0] in the first
   /// body and [2] in the second.

@@ -336,10 +336,13 @@ struct Writer {
   /// The parts of a body, at least one. `mass` and `inertia` are of its connectors.
   static std::vector<engine::Part> partsOf(const engine::Body& b, double mass, const Mat3& inertia) {
     double sum = 0;
-    for (const engine::Part& p : b.parts) sum += p.mass;
-    if (!(sum > 0)) return {{b.mass + mass, Vec3::Zero(), b.inertia + inertia}};
+    Vec3 moment = Vec3::Zero();
+    for (const engine::Part& p : b.parts) sum += p.mass, moment += p.mass * p.center;
+    if (!(sum > 1e-12)) return {{b.mass + mass, Vec3::Zero(), b.inertia + inertia}};
     std::vector<engine::Part> parts = b.parts;
-    for (engine::Part& p : parts) p.mass *= (b.mass + mass) / sum, p.inertia *= (b.mass + mass) / sum;
+    // The centre of mass is the body's, whatever the parts say.
+    const double share = (b.mass + mass) / sum;
+    for (engine::Part& p : parts) p.mass *= share, p.inertia *= share, p.center -= moment / sum;
     return parts;
   }
   void putInertial(const engine::Body& b, const engine::Part& part) {

@@ -54,6 +54,8 @@ Compiled compileWorld(const std::string& mjcf) {
 
 MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Compiled compiled)
     : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)), mark_(state.newMark()) {
+  linkOrigins_.resize(static_cast<std::size_t>(m_->nbody), Vec3::Zero());
+  hasParts_.resize(static_cast<std::size_t>(m_->nbody), 0);
   const auto id = [&](int kind, const std::string& name) { return mj_name2id(m_.get(), kind, name.c_str()); };
   for (Index i = 0; i < trees_.links.size(); ++i) {
     const Link& link = trees_.links[i];
@@ -61,8 +63,13 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Co
     Origin& from = origins_.emplace_back();
     from.body = model.bodies[link.body].id;
     from.mujocoBody = id(mjOBJ_BODY, bodyName(link.body));
+    if (from.mujocoBody >= 0)
+      linkOrigins_[static_cast<std::size_t>(from.mujocoBody)] = model.bodies[link.body].linkOrigin;
     for (std::size_t part = 1; part < model.bodies[link.body].parts.size(); ++part)
-      if (const int at = id(mjOBJ_BODY, partName(link.body, part)); at >= 0) from.parts.push_back(at);
+      if (const int at = id(mjOBJ_BODY, partName(link.body, part)); at >= 0) {
+        from.parts.push_back(at);
+        hasParts_[static_cast<std::size_t>(from.mujocoBody)] = 1;
+      }
     if (link.joint == kNone) {
       const engine::Body& b = model.bodies[link.body];
       for (int k = 0, dof = m_->body_dofadr[from.mujocoBody]; k < 6; ++k)
@@ -194,7 +201,7 @@ void MujocoWorld::takeLink(const Model& model, const State& state, Index index) 
     mjtNum *q = d_->qpos + m_->jnt_qposadr[i], *v = d_->qvel + m_->jnt_dofadr[i];
     switch (m_->jnt_type[i]) {
       case mjJNT_FREE: {
-        const Vec3 arm = child.rotation * model.bodies[link.body].linkOrigin;
+        const Vec3 arm = child.rotation * linkOrigins_[static_cast<std::size_t>(bodyId_[link.body])];
         const Vec3 position = child.position + arm;
         std::copy_n(position.data(), 3, q);
         std::copy_n(child.quaternion.data(), 4, q + 3);
@@ -292,7 +299,7 @@ void MujocoWorld::give(const Model& model, State& state) const {
     s.torque.setZero();
     const int id = bodyId_[i];
     if (id < 0) continue;
-    s.position = centreOf(model, i);
+    s.position = centreOf(id);
     std::copy_n(d_->xquat + 4 * id, 4, s.quaternion.begin());
     s.rotation = rotationOf(s.quaternion);
     s.angularVelocity = toVec(d_->cvel + 6 * id);
@@ -306,10 +313,9 @@ void MujocoWorld::give(const Model& model, State& state) const {
     if (trees_.links[i].carrier != kNone && trees_.links[i].body != kNone) giveConnector(model, state, i);
 }
 
-Vec3 MujocoWorld::centreOf(const Model& model, Index body) const {
-  const int id = bodyId_[body];
-  if (model.bodies[body].parts.size() < 2) return toVec(d_->xipos + 3 * id);
-  return toVec(d_->xpos + 3 * id) - rotationAt(d_->xmat + 9 * id) * model.bodies[body].linkOrigin;
+Vec3 MujocoWorld::centreOf(int body) const {
+  if (!hasParts_[static_cast<std::size_t>(body)]) return toVec(d_->xipos + 3 * body);
+  return toVec(d_->xpos + 3 * body) - rotationAt(d_->xmat + 9 * body) * linkOrigins_[static_cast<std::size_t>(body)];
 }
 
 Vec3 MujocoWorld::armOf(int body, const Vec3& point) const {
@@ -328,6 +334,7 @@ bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
   const Index i = w.geomOf_[geom1], k = w.geomOf_[geom2];
   if (i == kNone || k == kNone) return false;
   const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
+  if (a.body != kNone && a.body == b.body) return false;
   if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
   if (a.body != kNone && b.body != kNone && contains(w.joined_, pairOf(a.body, b.body))) return false;
   return !w.filter_ || w.filter_(a.owner, b.owner);
@@ -440,7 +447,7 @@ void MujocoWorld::addBodyDamping(const Model& model, Index body, Vec3& force, Ve
   const Vec3 origin = toVec(d_->xpos + 3 * id);
   const Vec3 drag = -b.linearDamping * velocityOf(id, origin);
   force += drag;
-  torque += (origin - centreOf(model, body)).cross(drag) - b.angularDamping * toVec(d_->cvel + 6 * id);
+  torque += (origin - centreOf(id)).cross(drag) - b.angularDamping * toVec(d_->cvel + 6 * id);
 }
 
 /// Forces on bodies as forces along the degrees of freedom. MuJoCo 2.2.2 would do so with a Jacobian of the whole world
@@ -458,7 +465,7 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
     addBodyDamping(model, i, force, torque);
     if (force.isZero(0) && torque.isZero(0)) continue;
     any = true;
-    wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body, centreOf(model, i)).cross(force), force};
+    wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body, centreOf(body)).cross(force), force};
   }
   const auto addDrag = [&](int body) { wrenches_[static_cast<std::size_t>(body)] += dragOf(model, body); };
   for (Index i = 0; medium && i < trees_.links.size(); ++i) {

@@ -64,8 +64,8 @@ class MujocoWorld {
   bool isFree(int body) const;
   void addBodyDamping(const engine::Model& model, Index body, Vec3& force, Vec3& torque) const;
   Wrench dragOf(const engine::Model& model, int body) const;
-  /// Centre of mass of a body of the model, all its parts together; world frame.
-  Vec3 centreOf(const engine::Model& model, Index body) const;
+  /// Centre of mass of the body of the model that has one of MuJoCo's, all its parts together; world frame.
+  Vec3 centreOf(int body) const;
   /// A point of one of MuJoCo's bodies, relative to the centre of mass of its tree, and its velocity; world frame.
   Vec3 armOf(int body, const Vec3& point) const;
   Vec3 velocityOf(int body, const Vec3& point) const;
@@ -111,10 +111,13 @@ class MujocoWorld {
   std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that joints connect, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
   std::vector<Wrench> wrenches_;                        ///< of applyForces(), by MuJoCo's body
-  std::vector<Vec3> boxes_;                             ///< by MuJoCo's body: edges of the box that has its inertia [m]
-  std::vector<std::uint8_t> stale_;                     ///< of take(), by link: its tree has to be written
-  bool prepared_ = false;    ///< contacts and constraints are those of the present coordinates
-  std::vector<int> listed_;  ///< MuJoCo's contacts, in the order of the last detect()
+  // By MuJoCo's body, as compiled: what the model has now may be later.
+  std::vector<Vec3> linkOrigins_;       ///< see Body::linkOrigin
+  std::vector<std::uint8_t> hasParts_;  ///< it is the first of several parts
+  std::vector<Vec3> boxes_;             ///< by MuJoCo's body: edges of the box that has its inertia [m]
+  std::vector<std::uint8_t> stale_;     ///< of take(), by link: its tree has to be written
+  bool prepared_ = false;               ///< contacts and constraints are those of the present coordinates
+  std::vector<int> listed_;             ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
   std::uint32_t mark_;                    ///< see DynamicState::mark

@@ -116,8 +116,8 @@ int Joint::axes() const { return engine::axesOf(jointType()); }
 
 void Joint::expectAxis(int axis, JointParameter p) const {
   // The damping of a ball joint acts about all directions.
-  if (axis == 0 && p == JointParameter::damping && jointType() == engine::JointType::ball) return;
-  expectAxis(axis);
+  if (p != JointParameter::damping || jointType() != engine::JointType::ball) return expectAxis(axis);
+  if (axis != 0) throw Error(fmt::format("{}: expected axis 0 for the damping, found axis {}", where(), axis));
 }
 
 void Joint::expectAxis(int axis) const {

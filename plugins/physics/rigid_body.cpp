@@ -1,5 +1,7 @@
 #include "rigid_body.h"
 
+#include <Eigen/Eigenvalues>
+
 #include "spark/state.h"
 
 namespace spark {
@@ -264,7 +266,16 @@ void RigidBody::addPart(double m, const Vec3& center, const Vec3& diagonal, cons
   physics::take(quaternion, axes, where());
   if (!(std::abs(Eigen::Vector4d(quaternion.data()).norm() - 1) < 1e-6))
     throw Error(fmt::format("{}: expected a quaternion of length 1 for the axes of a part", where()));
-  parts_.push_back({m, center, symmetric(diagonal, products), rotationOf(quaternion)});
+  const Mat3 inertia = symmetric(diagonal, products);
+  const bool real = center.allFinite() && center.norm() < 1e6 && m < 1e8 && inertia.allFinite() &&
+                    inertia.norm() < 1e8 &&
+                    Eigen::SelfAdjointEigenSolver<Mat3>(inertia).eigenvalues().minCoeff() >= -1e-9 * inertia.norm();
+  if (!real)
+    throw Error(
+        fmt::format("{}: expected a part with a mass below 1e8 kg, a centre within 1e6 m and an inertia that a body "
+                    "can have, found {} kg at ({}, {}, {}) with moments of {}, {}, {}",
+                    where(), m, center.x(), center.y(), center.z(), diagonal.x(), diagonal.y(), diagonal.z()));
+  parts_.push_back({m, center, inertia, rotationOf(quaternion)});
   if (world_) world_->setParts(body_, parts_);
 }
 

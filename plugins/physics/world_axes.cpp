@@ -1,3 +1,4 @@
+#include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <atomic>
@@ -198,17 +199,29 @@ void WorldModel::applyDamping() {
 }
 
 void WorldModel::applyBodyDamping(double dt) {
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
   for (Index i = 0; i < model_.bodies.size(); ++i) {
     const engine::Body& b = model_.bodies[i];
     DynamicState& s = state_.bodies[i];
     if ((b.linearDamping == 0 && b.angularDamping == 0) || !s.awake) continue;
     const Vec3 arm = s.rotation * b.linkOrigin;
-    const Vec3 force =
-        -b.linearDamping / (1 + dt * b.linearDamping / b.mass) * (s.linearVelocity + s.angularVelocity.cross(arm));
-    const Mat3 slowed = b.inertia + dt * b.angularDamping * Mat3::Identity();
-    const Vec3 spin = s.rotation.transpose() * s.angularVelocity;
-    s.force += force;
-    s.torque += arm.cross(force) - b.angularDamping * (s.rotation * slowed.inverse() * b.inertia * spin);
+    Vec6 motion;
+    motion << s.linearVelocity, s.angularVelocity;
+    // The velocity at the origin of the link's frame is J times the motion.
+    Eigen::Matrix<double, 3, 6> j;
+    j << Mat3::Identity(), (Mat3() << 0, arm.z(), -arm.y(), -arm.z(), 0, arm.x(), arm.y(), -arm.x(), 0).finished();
+    Mat6 damping = b.linearDamping * j.transpose() * j;
+    damping.diagonal().tail<3>().array() += b.angularDamping;
+    if (b.joints == 0) {
+      Mat6 mass = Mat6::Zero();
+      mass.diagonal().head<3>().setConstant(b.mass);
+      mass.bottomRightCorner<3, 3>() = s.rotation * b.inertia * s.rotation.transpose();
+      motion = (mass + dt * damping).ldlt().solve(mass * motion);
+    }
+    const Vec6 force = -damping * motion;
+    s.force += force.head<3>();
+    s.torque += force.tail<3>();
   }
 }
 

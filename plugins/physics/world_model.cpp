@@ -207,14 +207,17 @@ void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
 void WorldModel::setParts(BodyHandle body, const std::vector<engine::Part>& parts) {
   for (const engine::Part& p : parts)
     if (!(p.mass >= 0) || !inRange(&p.mass, 1) || !inRange(p.center) || !inRange(p.inertia.data(), 9)) return;
+  if (parts.empty() && model_.bodies[bodies_[body]].parts.empty()) return;
   model_.bodies[bodies_[body]].parts = parts;
   ++model_.dynamics;
 }
 
 void WorldModel::setDamping(BodyHandle body, double linear, double angular) {
-  const double numbers[] = {linear, angular};
-  if (!inRange(numbers, 2) || !(linear >= 0) || !(angular >= 0)) return;
+  if (!(linear >= 0) || !(angular >= 0)) return;
   engine::Body& b = model_.bodies[bodies_[body]];
+  linear = std::min(linear, 1e9);
+  angular = std::min(angular, 1e9);
+  if (b.linearDamping == linear && b.angularDamping == angular) return;
   b.linearDamping = linear;
   b.angularDamping = angular;
   bodiesDamped_ |= linear > 0 || angular > 0;

@@ -124,7 +124,7 @@ class WorldModel {
   void setEnabled(BodyHandle body, bool on);
   /// False: the body sleeps.
   bool enabled(BodyHandle body) const { return of(body).awake; }
-  /// Sets Body::linearDamping and angularDamping. Numbers below 0 or not finite are ignored.
+  /// Sets Body::linearDamping and angularDamping, at most 1e9 each. Numbers below 0 and no numbers are ignored.
   void setDamping(BodyHandle body, double linear, double angular);
   /// See Body::connector.
   void setConnector(BodyHandle body, bool on);
@@ -275,7 +275,9 @@ class WorldModel {
   /// Add the forces of controllers and of damping to those on the bodies.
   void applyControls();
   void applyDamping();
-  /// Adds the damping of bodies, implicitly: it slows bodies down and never turns them back, however strong it is.
+  /// Adds the damping of bodies. That of a body without joints is implicit: it never turns it back, however strong it
+  /// is. That of others is of the present velocity, as that of joints: too strong for their inertia and the step, it
+  /// throws them about.
   void applyBodyDamping(double dt);
   void applySprings();
   /// False for a joint whose bodies sleep: forces on them would pile up.

@@ -107,6 +107,11 @@ void BodyBuilder::compensateGravity(const PlacedBody& p, Leaf& body) {
 
 void BodyBuilder::makeJoints(const PlacedBody& p) {
   const std::vector<Joint>& joints = p.body->joints;
+  for (const Joint& j : joints)
+    if (!c_.flags.passive && j.damping > 0)
+      c_.unsupported.add(j.from,
+                         "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "
+                         "part of its implicit integration");
   if (joints.front().kind == JointKind::free) {
     c_.freeJoints.insert(joints.front().name);
     Leaf& body = *p.node->child("body");
@@ -140,10 +145,6 @@ void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, co
     if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
     if (j.kind != JointKind::ball) setAxis(made, j, p.world, c_.flags);
     if (j.kind == JointKind::ball) made.setParameter(JointParameter::damping, 0, c_.flags.passive ? j.damping : 0);
-    if (!c_.flags.passive && j.damping > 0)
-      c_.unsupported.add(j.from,
-                         "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "
-                         "part of its implicit integration");
     if (!j.name.empty() && !c_.joints.emplace(j.name, Construction::MadeJoint{&j, &made}).second)
       throw Error(fmt::format("there are two joints '{}'", j.name));
   } catch (const Error& e) {

@@ -312,7 +312,7 @@ void Reader::finishMasses() {
       b.mass = {0, Vec3::Zero(), Mat3::Zero()};
       b.inertiaAxes.setIdentity();
       for (const Geom& g : b.geoms) {
-        if (!g.mass) continue;
+        if (!g.mass || g.mass->mass <= 0) continue;
         if (b.mass.mass == 0)
           b.inertiaAxes = g.pose.rotation;
         else

@@ -67,6 +67,22 @@ TEST_CASE("damping slows a free body, and does not turn it back however strong i
   });
 }
 
+TEST_CASE("strong damping beside the centre of mass holds the point that it acts at") {
+  withEngines(
+      [](EngineWorld& w) {
+        w.setGravity(0);
+        const BodyHandle rod = w.body({0, 0, 0}, 1, Mat3::Identity() / 12);
+        w.world.setLinkOrigin(rod, {-0.5, 0, 0});
+        w.world.setDamping(rod, 1000, 0);
+        w.world.setLinearVelocity(rod, {0, 1, 0});
+        w.run(0.2);
+        const Vec3 at = w.world.state(rod).rotation * Vec3(-0.5, 0, 0);
+        CHECK((w.velocity(rod) + w.spin(rod).cross(at)).norm() < 0.02);
+        CHECK(w.velocity(rod).norm() < 1);
+      },
+      {&EngineKind::rotation});
+}
+
 TEST_CASE("damping of a body acts at the origin of its link's frame") {
   withEngines(
       [](EngineWorld& w) {

@@ -70,6 +70,25 @@ TEST_CASE("a ball bounces to the height that its restitution gives") {
       {&EngineKind::surfaces});
 }
 
+TEST_CASE("the parts of a body do not collide with each other, and fall as one") {
+  withEngines([](EngineWorld& w) {
+    const BodyHandle b = w.body({0, 0, 5});
+    const Mat3 inertia = Mat3::Identity() * 0.01;
+    w.world.setParts(b, {{0.5, {-0.1, 0, 0}, inertia}, {0.5, {0.1, 0, 0}, inertia}});
+    for (const int part : {0, 1}) {
+      const GeomHandle g =
+          w.geom({.shape = Shape::sphere, .radius = 0.2}, b, {Vec3(part ? 0.1 : -0.1, 0, 0), Mat3::Identity()});
+      engine::Geom::Mujoco surface;
+      surface.part = part;
+      w.world.setMujoco(g, surface);
+    }
+    w.run(0.1);
+    CHECK(w.contacts.empty());
+    CHECK(w.velocity(b).z() == Approx(-0.981));
+    CHECK(std::abs(w.position(b).x()) < 1e-12);
+  });
+}
+
 TEST_CASE("a contact knows its geoms, bodies and owners, and its normal points into A") {
   withEngines([](EngineWorld& w) {
     int groundOwner = 0, ballOwner = 0;

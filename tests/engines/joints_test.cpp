@@ -255,6 +255,18 @@ TEST_CASE("the damping of a ball joint acts about all directions, that of a body
       });
 }
 
+TEST_CASE("the damping of a body beside its hinge slows all that turns with it") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    w.joint(JointType::hinge, p.child, BodyHandle::none, {0.5, 0, 0});
+    w.world.setDamping(p.child, 0, 1);
+    w.world.setAngularVelocity(p.child, {0, 0, 1});
+    w.world.setLinearVelocity(p.child, {0, -0.5, 0});
+    w.run(0.2);
+    // 1 kg 0.5 m from the hinge, and 0.1 kg m^2 of its own.
+    CHECK(w.spin(p.child).z() == Approx(std::exp(-0.2 / 0.35)).epsilon(0.03));
+  });
+}
+
 TEST_CASE("a controller moves each axis of a joint to the target, with either order of bodies and with the world") {
   for (const JointType type : {JointType::hinge, JointType::slider, JointType::universal, JointType::hinge2})
     for (const int order : {0, 1, 2, 3})
