@@ -195,10 +195,12 @@ struct JointWriter {
 
   void writeBall() {
     addBall(joint.ode.erp, joint.ode.cfm);
-    if (const double damping = joint.axes[0].damping; damping > 0)
-      for (const Vec3& axis : {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()})
-        addInertial(SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis),
-                    damping / constants.inverseDt, 0);
+    const double damping = joint.axes[0].damping;
+    for (int i = 0; damping > 0 && i < 3; ++i) {
+      const Vec3 axis = Vec3::Unit(i);
+      addInertial(SpatialVector::of(Vec3::Zero(), axis), SpatialVector::of(Vec3::Zero(), -axis),
+                  damping / constants.inverseDt, 0);
+    }
   }
 
   void writeHinge() {
