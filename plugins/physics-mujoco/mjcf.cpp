@@ -163,8 +163,8 @@ int coordinatesOf(JointType type) {
 
 namespace {
 
-/// Principal moments of inertia, and their axes.
-/// `wanted`: to be taken if they are. Of equal moments, any axes are principal, and drag depends on them.
+/// Principal moments of inertia, and their axes. `wanted` are taken if they are principal: of equal moments any axes
+/// are, and drag depends on which.
 std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia, const Mat3& wanted) {
   if (const Mat3 turned = wanted.transpose() * inertia * wanted; turned.isDiagonal(1e-14))
     return {turned.diagonal(), wanted};
@@ -346,8 +346,8 @@ struct Writer {
     return parts;
   }
   void putInertial(const engine::Body& b, const engine::Part& part) {
-    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
     if (part.mass == 0) return;
+    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
     const auto [moments, axes] = principalAxes(part.inertia, part.axes);
     put(R"(<inertial mass="{:.17g}" diaginertia="{}")", part.mass, text(moments));
     putPose({part.center - b.linkOrigin, axes});

@@ -101,7 +101,7 @@ def newcomer():
                        for words in (["rev-parse", "HEAD"], ["status", "--porcelain"]))
     kept = ROOT / f"build/newcomer/{commit}.json"
     if kept.exists() and not changes:
-        say(f"The fresh clone of this commit was judged before: {kept}")
+        say(f"The fresh clone of this commit was judged before; without {kept} it is judged again")
         found = json.loads(kept.read_text())
         return Newcomer(**{**found, **{name: Done(**found[name]) for name in ("play", "check", "slow")}})
     with fresh_clone() as clone:

@@ -52,7 +52,7 @@ def behaviour():
     hashes, same = tests("golden", "bench-hashes")
     say("tools/accept fast")
     fast = run([ROOT / "tools/accept", "fast"])
-    failed = [line.strip() for line in fast.stdout.splitlines() if "| fail" in line.lower()]
+    failed = [" ".join(line.split()) for line in fast.stdout.splitlines() if "| fail" in line.lower()]
     return f"sessions: {sessions}; hashes: {hashes}; fast: {'; '.join(failed) or f'exit code {fast.returncode}'}", PASS if repeated == same == PASS and fast.returncode == 0 else FAIL
 
 

@@ -381,3 +381,19 @@ TEST_CASE("with several engine steps per cycle, forces act in all of them, and s
     CHECK(flying.state().linearVelocity.z() == Approx(-9.81 * 0.04).epsilon(1e-6));
   }
 }
+
+TEST_CASE("a part that no body can have is refused") {
+  PhysicsHost host;
+  Leaf& body = *host.thing("thing", {0, 0, 1}).child("body");
+  const auto add = [&](double mass, double x, double moment, double w) {
+    PhysicsHost::call(body, "addPart", {mass, x, 0.0, 0.0, moment, 1.0, 1.0, 0.0, 0.0, 0.0, List{w, 0.0, 0.0, 0.0}});
+  };
+  for (const double bad : {-1.0, HUGE_VAL, std::nan("")}) {
+    CAPTURE(bad);
+    CHECK_THROWS_AS(add(bad, 0, 1, 1), Error);
+    CHECK_THROWS_AS(add(1, 0, bad, 1), Error);
+    if (!std::isfinite(bad)) CHECK_THROWS_AS(add(1, bad, 1, 1), Error);
+  }
+  CHECK_THROWS_AS(add(1, 0, 1, 2), Error);
+  CHECK_NOTHROW(add(1, 0, 1, 1));
+}
