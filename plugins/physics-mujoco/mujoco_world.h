@@ -8,6 +8,10 @@
 
 namespace spark::mujoco {
 
+// A vector and a rotation in MuJoCo's memory.
+inline Vec3 toVec(const mjtNum* v) { return {v[0], v[1], v[2]}; }
+inline auto rotationAt(const mjtNum* m) { return Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>>(m); }
+
 /// A model and its data.
 struct Compiled {
   ModelPointer model;
