@@ -11,6 +11,7 @@ from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say, tests
 
 STEP = 0.02  # s of a cycle
 RAW = 3406  # us: a cycle of raw ODE with 22 moving humanoids on the machine for which the targets in microseconds were set
+RUNS = 5  # of which the least time counts where a ratio of two times is judged
 PAGE = ROOT / "docs/performance.md"
 HISTORY = ROOT / "tests/bench/history"
 history = False  # whether measurements are stored
@@ -18,7 +19,7 @@ BEGIN, END = "<!-- written by tools/accept fast --write -->", "<!-- end of what 
 
 
 @functools.lru_cache(maxsize=None)
-def bench(*arguments):
+def bench(*arguments, repetition=0):
     """Rows of one run of sparkbench."""
     say("Measuring: sparkbench " + " ".join(arguments))
     keep = ["--history", HISTORY] if history and not {"--validate-hash", "--realtime", "--loading"} & set(arguments) else []
@@ -30,6 +31,11 @@ def bench(*arguments):
 
 def row(rows, world, way, threads=1):
     return next(r for r in rows if (r["world"], r["way"], r["threads"]) == (world, way, threads))
+
+
+def least(world, way, *arguments):
+    """The least CPU time of a cycle [us] in several runs: what else runs on the machine adds to a measurement and never takes from it."""
+    return min(row(bench(*arguments, repetition=i), world, way)["cpuMicros"] for i in range(RUNS))
 
 
 def judge(*good):
@@ -57,8 +63,8 @@ def both_ways(world):
 
 
 def in_process():
-    r = row(both_ways("moving22"), "moving22", "host")
-    return f"{r['ratio']:.3f} x raw ODE ({r['cpuMicros']:.0f} of {r['rawMicros']:.0f} us)", judge(r["ratio"] <= 1.10)
+    host, raw = (least("moving22", way, "--only", "moving22", "--way", "host") for way in ("host", "raw"))
+    return f"{host / raw:.3f} x raw ODE ({host:.0f} of {raw:.0f} us, the least of {RUNS} runs each)", judge(host / raw <= 1.10)
 
 
 def over_tcp():
@@ -86,9 +92,8 @@ def loading():
 
 
 def spheres():
-    rows = bench("--only", "spheres100,spheres1000", "--way", "host")
-    each = {n: row(rows, f"spheres{n}", "host")["cpuMicros"] / n for n in (100, 1000)}
-    return f"{each[1000]:.1f} us for each of 1,000, {each[100]:.1f} us for each of 100: {each[1000] / each[100]:.2f} x", judge(each[1000] <= 1.3 * each[100])
+    each = {n: least(f"spheres{n}", "host", "--only", "spheres100,spheres1000", "--way", "host") / n for n in (100, 1000)}
+    return f"{each[1000]:.1f} us for each of 1,000, {each[100]:.1f} us for each of 100, the least of {RUNS} runs: {each[1000] / each[100]:.2f} x", judge(each[1000] <= 1.3 * each[100])
 
 
 def encoding():
