@@ -1,5 +1,6 @@
 #include "ode_threads.h"
 
+#include <algorithm>
 #include <memory>
 
 #include "ode_process.h"
@@ -19,10 +20,17 @@ void IslandThreads::takeMessage(std::string& text) {
   }
 }
 
+void IslandThreads::Lane::grow(std::size_t calls) {
+  while (memory.size() < calls) free.push_back(&memory.emplace_back());
+  // Each call is in one of them.
+  free.reserve(memory.size());
+  posted.reserve(memory.size());
+}
+
 IslandThreads::Call& IslandThreads::post(Call* dependent, int* fault, std::size_t dependencies,
                                          dThreadedCallFunction* function, void* context, dcallindex_t index) {
   Lane& lane = current ? *current : outside_;
-  if (lane.free.empty()) lane.free.push_back(&lane.memory.emplace_back());
+  if (lane.free.empty()) lane.grow(lane.memory.size() + 1);
   Call& call = *lane.free.back();
   lane.free.pop_back();
   call.owner = &lane;
@@ -50,7 +58,12 @@ void IslandThreads::runJobStarts() {
   std::erase_if(outside_.posted, [](const Call* call) { return call->dependencies == 0; });
 
   // Each job runs one start and the calls that it posts.
+  // Timing decides which thread solves which island: so that this decides nothing about memory, all lanes have as much
+  // as the largest one.
   while (lanes_.size() < starts_.size()) lanes_.emplace_back();
+  std::size_t largest = 0;
+  for (const Lane& lane : lanes_) largest = std::max(largest, lane.memory.size());
+  for (Lane& lane : lanes_) lane.grow(largest);
   jobs_.run(starts_.size(), [this](std::size_t i) {
     Lane& lane = lanes_[i];
     const MessageCapture capture(lane.message);

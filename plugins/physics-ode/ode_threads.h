@@ -71,6 +71,8 @@ class IslandThreads {
     std::vector<Call*> free;    ///< calls of `memory` that are not in use
     std::vector<Call*> posted;  ///< calls that have not started, in order of posting
     std::string message;        ///< the last message from ODE in this thread
+    /// Makes room for this many calls.
+    void grow(std::size_t calls);
   };
   static thread_local Lane* current;  ///< of the job that this thread runs; nullptr outside of jobs
 
