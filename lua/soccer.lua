@@ -19,6 +19,7 @@ local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = 
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 local compat  = compatOption(league.compat)
+local offside = option{ name = "offside", default = false, doc = "Offside is judged; the installed base has no such rule." }
 
 local engine  = engineOption(league.solver)
 local exact   = option{ name = "exactReplay", default = engine == "OdeEngine",
@@ -42,6 +43,7 @@ plugin "effectors"
 naoVariables()
 soccerVariables(league.variables)
 soccerRules()
+if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
 soccerFouls()
 soccerMonitor()
 soccerCompat(compat)

@@ -274,7 +274,7 @@ struct RayHit {
 /// The physics server, at /sys/server/physics.
 class IPhysicsServer {
  public:
-  SPARK_INTERFACE(IPhysicsServer, 3);
+  SPARK_INTERFACE(IPhysicsServer, 4);
   static constexpr const char* kPath = "/sys/server/physics";
   virtual ~IPhysicsServer() = default;
   /// The model and the state of the active scene's world. Throw Error when there is none. Valid until the tree changes;
@@ -292,6 +292,15 @@ class IPhysicsServer {
   /// when there is no world. Several threads may call it at once in the sense phase; the same holds for overlaps().
   virtual std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length,
                                         const Node* except = nullptr) = 0;
+  /// True if a collider is between two points [m]. Those that contain `to` (within 1 mm), those that move with `own`
+  /// and those below `except` do not count: they are the object that is looked at, and the one that looks. Otherwise
+  /// as castRay().
+  virtual bool isHidden(const Vec3& from, const Vec3& to, const IRigidBody* own, const Node* except) = 0;
+  /// Prepares for many calls of castRay() and isHidden(): they find the same, faster, until a body is moved. Sensors
+  /// that cast rays call it in ISharedView::share(). Simulation thread.
+  virtual void prepareRays() = 0;
+  /// True if the active scene has a world.
+  virtual bool hasWorld() = 0;
   /// Appends the colliders that a sphere touches, in order of creation.
   virtual void overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) = 0;
   /// The collider that is the `owner` of a contact.

@@ -57,7 +57,7 @@ World* PhysicsServer::findWorld() {
 }
 
 physics::WorldModel& PhysicsServer::expectWorld() {
-  if (World* w = findWorld()) return *w->model();
+  if (World* w = currentWorld()) return *w->model();
   throw Error(fmt::format("{}: the active scene has no world: make one, new(\"World\", \"/usr/scene/world\")", path()));
 }
 
@@ -115,6 +115,7 @@ bool PhysicsServer::refresh() {
   if (!tree_.changed(*this)) return world_ != nullptr;
   bodies_.clear();
   scripts_.clear();
+  rays_.clear();
   world_ = findWorld();
   if (!world_) return false;
   collect(*world_->parent());
@@ -204,12 +205,39 @@ std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direc
     throw Error(fmt::format(
         "{}: expected a ray with finite numbers, a direction longer than 0 and a length of 0 or more", path()));
   const Vec3 unit = direction / norm;
-  const auto hit = physics::castRay(world.model(), world.state(), from, unit, length, [&](const engine::Geom& g) {
+  const physics::Accepts accepts = [&](const engine::Geom& g) {
     return !except || !isBelow(colliderOf(g.owner).leaf(), *except);
-  });
+  };
+  const auto hit = rays_.isCurrent(world.model(), world.poses())
+                       ? rays_.castRay(from, unit, length, accepts)
+                       : physics::castRay(world.model(), world.state(), from, unit, length, accepts);
   if (!hit) return std::nullopt;
   return RayHit{&colliderOf(world.model().geoms[hit->geom].owner), hit->distance, from + hit->distance * unit,
                 hit->normal};
+}
+
+bool PhysicsServer::isHidden(const Vec3& from, const Vec3& to, const IRigidBody* own, const Node* except) {
+  constexpr double kAtSurface = 1e-3;  // m: single-precision positions and rounding
+  const physics::WorldModel& world = expectWorld();
+  const Vec3 way = to - from;
+  const double length = way.norm();
+  if (!std::isfinite(length) || length == 0) return false;
+  const Vec3 unit = way / length;
+  const physics::Accepts accepts = [&](const engine::Geom& g) {
+    ICollider& collider = colliderOf(g.owner);
+    if ((own && collider.body() == own) || (except && isBelow(collider.leaf(), *except))) return false;
+    const auto index = static_cast<engine::Index>(&g - world.model().geoms.data());
+    const Pose pose = physics::poseOf(world.model(), world.state(), index);
+    return physics::distanceTo(g.shape, pose.rotation.transpose() * (to - pose.position)) > kAtSurface;
+  };
+  if (rays_.isCurrent(world.model(), world.poses())) return rays_.meets(from, unit, length, accepts);
+  return physics::castRay(world.model(), world.state(), from, unit, length, accepts).has_value();
+}
+
+void PhysicsServer::prepareRays() {
+  if (!refresh()) return;
+  const physics::WorldModel& world = *world_->model();
+  rays_.update(world.model(), world.state(), world.poses());
 }
 
 void PhysicsServer::overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) {

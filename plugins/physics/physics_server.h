@@ -8,6 +8,7 @@
 
 #include "collider.h"
 #include "handlers.h"
+#include "ray_scene.h"
 
 namespace spark {
 
@@ -21,6 +22,9 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void bodies(Node& root, std::vector<IRigidBody*>& out) override;
   std::span<const engine::Contact> contacts() const override;
   std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length, const Node* except) override;
+  bool isHidden(const Vec3& from, const Vec3& to, const IRigidBody* own, const Node* except) override;
+  void prepareRays() override;
+  bool hasWorld() override { return currentWorld() != nullptr; }
   void overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) override;
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
   /// Throws Error, with what to do, unless there are an engine and a collision detection.
@@ -44,6 +48,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   };
   /// The world of the active scene; nullptr when there is none.
   World* findWorld();
+  /// The same without a search while the tree is that of refresh(): for calls by the thousand.
+  World* currentWorld() { return world_ && !tree_.isStale(*this) ? world_ : findWorld(); }
   /// The same; throws Error when there is none.
   physics::WorldModel& expectWorld();
   /// Collects bodies, colliders and handlers again when the shape of the scene changed. False when there is no world.
@@ -79,6 +85,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::vector<Placed> bodies_;
   std::uint64_t structure_ = 0;  ///< Model::structure for which their indices are
   std::vector<Ref<ScriptHandler>> scripts_;
+  physics::RayScene rays_;
   engine::Contacts contacts_;
   std::uint64_t contactsAt_ = 0;       ///< version of the tree when they were detected
   std::vector<std::size_t> measured_;  ///< indices of contacts that have feedback only because of measureForces

@@ -31,6 +31,9 @@ void findOverlaps(const engine::Model& model, const engine::State& state, const 
 /// Distance from a point to a shape, both in the shape's frame [m]; 0 or less inside. Of a mesh: to its surface.
 double distanceTo(const engine::ShapeDescription& shape, const Vec3& point);
 
+/// True for geoms that rays and overlaps meet: those that collide, but not rays.
+bool isQueried(const engine::Geom& geom);
+
 /// World pose of a geom.
 Pose poseOf(const engine::Model& model, const engine::State& state, engine::Index geom);
 

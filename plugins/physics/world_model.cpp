@@ -128,6 +128,7 @@ engine::BodyState WorldModel::state(BodyHandle body) const {
 void WorldModel::setPosition(BodyHandle body, const Vec3& wanted) {
   if (!inRange(wanted)) return;
   const Index i = bodies_[body];
+  ++poses_;
   state_.bodies[i].position = watch_[i].validPosition = rounded(wanted);
   state_.bodies[i].mark = 0;
   state_.markMoved(i);

@@ -211,6 +211,8 @@ class WorldModel {
   void setFeedback(JointHandle joint, bool on);         ///< true: steps measure forces and torques of the joint
   /// Force [N] and torque [Nm] on the first and the second body in the last step; zero without feedback.
   void feedback(JointHandle joint, Vec3& force1, Vec3& torque1, Vec3& force2, Vec3& torque2) const;
+  /// Another number whenever a body was moved or the angle of a joint may have changed.
+  std::uint64_t poses() const { return poses_; }
   engine::Index index(JointHandle joint) const { return joints_[joint]; }
 
   /// Detects contacts: see ICollision::detect().
@@ -332,7 +334,7 @@ class WorldModel {
   std::vector<std::uint8_t> geomEdited_;                 ///< by geom: it is in Model::editedGeoms
   std::vector<Watch> watch_;                             ///< by body
   mutable std::vector<CachedAngle> angles_;              ///< by joint
-  std::uint64_t poses_ = 1;                              ///< changes when the angle of a joint may have changed
+  std::uint64_t poses_ = 1;                              ///< see poses()
   std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
   bool damped_ = false;                                  ///< an axis has damping
   bool bodiesDamped_ = false;                            ///< a body has damping

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <vector>
 
 #include "api/agents.h"
@@ -8,13 +9,15 @@
 
 namespace spark {
 
-/// `(collision floor wall)`: names of the colliders that touched since the last percept, each once; no percept when
-/// there were none. A PerceptorHandler feeds it.
+/// `(collision floor wall)`: names of the colliders that touched since the last percept, or their paths, each once; no
+/// percept when there were none. A PerceptorHandler feeds it.
 class CollisionPerceptor : public Perceptor {
   SPARK_CLASS(CollisionPerceptor, Perceptor)
  public:
   static void describe(Description<CollisionPerceptor>& d) {
     d.doc("Senses what touched its transform's colliders: (collision names...).");
+    d.property("paths", &CollisionPerceptor::paths_)
+        .doc("Reports the paths of colliders, which differ also where names are the same; false: their names.");
   }
 
   /// Records that `collider` touched. Called in the physics phase.
@@ -22,7 +25,7 @@ class CollisionPerceptor : public Perceptor {
     if (std::find(ids_.begin(), ids_.end(), collider.id()) != ids_.end()) return;
     if (isRestored(collider)) return;
     ids_.push_back(collider.id());
-    names_.add(collider.name());
+    names_.add(textOf(collider));
   }
 
   void sense(Predicates& out, const Event&) override {
@@ -50,12 +53,14 @@ class CollisionPerceptor : public Perceptor {
   }
 
  private:
+  std::string textOf(const Leaf& collider) const { return paths_ ? collider.path() : collider.name(); }
+
   static constexpr std::uint64_t kRestored = 0;  ///< id of a collider of which only the name was restored
   /// True when a restored name is that of `collider`; the entry takes its id then.
   bool isRestored(const Leaf& collider) {
     std::size_t i = 0;
     for (const Element name : names_) {
-      if (ids_[i] == kRestored && name.text() == collider.name()) {
+      if (ids_[i] == kRestored && name.text() == textOf(collider)) {
         ids_[i] = collider.id();
         return true;
       }
@@ -63,7 +68,8 @@ class CollisionPerceptor : public Perceptor {
     }
     return false;
   }
-  Predicates names_;                ///< of the colliders that touched
+  bool paths_ = false;
+  Predicates names_;                ///< of the colliders that touched, or their paths
   std::vector<std::uint64_t> ids_;  ///< of the same colliders
 };
 

@@ -5,33 +5,41 @@
 #include <utility>
 #include <vector>
 
-#include "api/agents.h"
 #include "api/match.h"
+#include "ray_perceptor.h"
 #include "spark/random.h"
 
 namespace spark {
 
-/// `(US Left (0.87 2.31 5.00 ...))`: horizontal distances [m] to echo targets (IEchoTarget: other robots, posts) in a
-/// cone about the y axis of its transform, nearest first. Missing echoes are reported as `maxRange`. Heights are
-/// ignored: the cone is a sector of the ground plane.
-class SonarPerceptor : public Perceptor {
-  SPARK_CLASS(SonarPerceptor, Perceptor)
+/// `(US Left (0.87 2.31 5.00 ...))`: distances [m] to what is in a cone about the y axis of its transform, nearest
+/// first. Missing echoes are reported as `maxRange`.
+///
+/// As in the installed base, it hears the echo targets (IEchoTarget: other robots, posts) and ignores heights: the cone
+/// is a sector of the ground plane, and nothing hides a target. With `byRays` it casts rays into the cone, and hears
+/// each collider that one of them meets first, once.
+class SonarPerceptor : public RayPerceptor {
+  SPARK_CLASS(SonarPerceptor, RayPerceptor)
  public:
+  SonarPerceptor() { minRange_ = 0.25, maxRange_ = 5.0; }
   static void describe(Description<SonarPerceptor>& d) {
     using S = SonarPerceptor;
-    d.doc("Senses distances to other robots and posts in a cone in front of it: (US name (d1 d2 ...)) in m.");
+    d.doc("Senses distances to what is in a cone in front of it: (US name (d1 d2 ...)) in m.");
+    d.property("byRays", &S::byRays_)
+        .doc("Hears every collider that rays meet; false: as in the installed base, other robots and posts, unhidden.");
+    d.property("rings", &S::rings_)
+        .range(0, 50)
+        .doc("Rings of rays around the one in the middle of the cone; ring k has 6 k rays. For byRays.");
     d.property("maxEchoes", &S::maxEchoes_).range(0, 100).doc("Number of reported distances.");
-    d.property("senseCone", &S::senseConeDeg_).unit("deg").range(0, 360).doc("Full horizontal opening angle.");
-    d.property("minRange", &S::minRange_).unit("m").min(0).doc("Smallest distance; nearer targets are reported at it.");
-    d.property("maxRange", &S::maxRange_).unit("m").min(0).doc("Largest distance; farther targets are not detected.");
+    d.property("senseCone", &S::senseConeDeg_).unit("deg").range(0, 360).doc("Full opening angle of the cone.");
     d.property("noise", &S::noise_).doc("Adds Gaussian noise to the distances.");
     d.property("random", &S::random_).state().doc("State of the noise's random numbers.");
-    d.method("setRange", &S::setRange).parameters({"min [m]", "max [m]"}).doc("Sets minRange and maxRange.");
     d.alias("addNoise", "setNoise");
   }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
-    listen();
+    echoes_.clear();
+    byRays_ ? castCone() : listen();
+    selectNearest();
     out.open("US").add(messageName()).open();
     const std::size_t count = maxEchoes_;
     for (std::size_t i = 0; i < count; ++i) out.add(i < echoes_.size() ? echoes_[i] : maxRange_);
@@ -41,13 +49,37 @@ class SonarPerceptor : public Perceptor {
  private:
   static constexpr double kSigma = 0.005;  // standard deviation of the noise [m]
 
-  void setRange(double min, double max) { minRange_ = min, maxRange_ = max; }
+  bool casts() const override { return byRays_; }
 
-  /// Fills echoes_ with at most maxEchoes_ distances, nearest first.
+  /// Adds the nearest distance of each collider that a ray meets.
+  void castCone() {
+    beginMeasuring();
+    heard_.clear();
+    const double widest = degToRad(senseConeDeg_ / 2);
+    for (int ring = 0; ring <= rings_; ++ring) {
+      const double aside = ring > 0 ? widest * ring / rings_ : 0;
+      const int rays = std::max(1, 6 * ring);
+      for (int i = 0; i < rays; ++i) {
+        const double around = 2 * kPi * i / rays;
+        const auto hit =
+            cast({std::sin(aside) * std::cos(around), std::cos(aside), std::sin(aside) * std::sin(around)});
+        if (!hit) continue;
+        const auto known = std::find(heard_.begin(), heard_.end(), hit->collider);
+        if (known == heard_.end()) {
+          heard_.push_back(hit->collider);
+          echoes_.push_back(hit->distance);
+        } else {
+          double& echo = echoes_[static_cast<std::size_t>(known - heard_.begin())];
+          echo = std::min(echo, hit->distance);
+        }
+      }
+    }
+  }
+
+  /// Adds the distances to echo targets.
   void listen() {
     const Matrix& here = transform()->world();
     const Vec3f forward = here.block<3, 1>(0, 1);
-    echoes_.clear();
     if (tree_.changed(*this)) findTargets();
 
     // Targets within range and cone, measured in the ground plane.
@@ -59,8 +91,10 @@ class SonarPerceptor : public Perceptor {
       if (distance <= maxRange_ && std::abs(radToDeg(std::atan2(cross, along))) <= senseConeDeg_ / 2)
         echoes_.push_back(distance);
     }
+  }
 
-    // The nearest ones, with noise.
+  /// Keeps the maxEchoes_ nearest distances, in order, and adds the noise.
+  void selectNearest() {
     std::sort(echoes_.begin(), echoes_.end());
     if (const std::size_t count = maxEchoes_; echoes_.size() > count) echoes_.resize(count);
     for (double& echo : echoes_)
@@ -87,12 +121,14 @@ class SonarPerceptor : public Perceptor {
   }
 
   int maxEchoes_ = 10;
-  double senseConeDeg_ = 60, minRange_ = 0.25, maxRange_ = 5.0;
-  bool noise_ = false;
+  double senseConeDeg_ = 60;
+  bool noise_ = false, byRays_ = false;
+  int rings_ = 3;
   RandomStream random_{*this, "sonar"};
   TreeWatch tree_;
   std::vector<const Transform*> targets_;
   std::vector<double> echoes_;
+  std::vector<const ICollider*> heard_;  ///< of these echoes, by rays
 };
 
 }  // namespace spark

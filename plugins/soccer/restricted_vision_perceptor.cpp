@@ -52,6 +52,8 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
       .doc("Flags, goals, ball and players farther away are not seen, lines are; infinite by default.");
   d.property("staticSenseAxis", &V::staticAxis_)
       .doc("Angles are relative to the x axis of the team's frame, minus pan and tilt; false: to the head's frame.");
+  d.property("occlusion", &V::occlusion, &V::setOcclusion)
+      .doc("What is behind a collider is not seen. Soccer.VisionOcclusion switches it on for all.");
   d.property("senseMyPos", &V::senseMyPos_).doc("Reports its own position, too: (mypos x y z).");
   d.property("senseMyOrien", &V::senseMyOrien_).doc("Reports its own heading, too: (myorien deg).");
   d.property("senseBallPos", &V::senseBallPos_).doc("Reports the ball's true position, too: (ballpos x y z).");
@@ -120,19 +122,35 @@ bool RestrictedVisionPerceptor::measure(const Vec3f& view, soccer::Polar& out) {
   return cached.inCone;
 }
 
-bool RestrictedVisionPerceptor::see(const Vec3f& point, soccer::Polar& out) {
+bool RestrictedVisionPerceptor::see(const Vec3f& point, const IRigidBody* body, soccer::Polar& out) {
   const Vec3f offset = point - origin_;
   const float distance = offset.norm();
   if (distance <= kMinDistance || distance > eye_.range()) return false;
-  if (!measure(toView(offset) + noise_.calibration(), out)) return false;
+  if (!measure(toView(offset) + noise_.calibration(), out) || eye_.isHidden(origin_, point, body)) return false;
   // After the test of the cone, as in the installed base: reported angles can be slightly outside.
   noise_.apply(out);
   return true;
 }
 
+bool RestrictedVisionPerceptor::uncover(Vec3f& begin, Vec3f& end) const {
+  constexpr int kPieces = 16;
+  const auto at = [&](int i) { return Vec3f(begin + (end - begin) * (static_cast<float>(i) / kPieces)); };
+  const auto visible = [&](int i) { return !eye_.isHidden(origin_, at(i), nullptr); };
+  int first = 0, last = kPieces;
+  while (first < last && !visible(first)) ++first;
+  while (last > first && !visible(last)) --last;
+  if (first == last) return false;
+  const Vec3f from = at(first);
+  end = at(last);
+  begin = from;
+  return true;
+}
+
 bool RestrictedVisionPerceptor::seeLine(const VisibleObjects::FieldLine& line, soccer::Polar& begin,
                                         soccer::Polar& end) {
-  Vec3f a = toView(line.begin - origin_) + noise_.calibration(), b = toView(line.end - origin_) + noise_.calibration();
+  Vec3f from = line.begin, to = line.end;
+  if (eye_.hides() && !uncover(from, to)) return false;
+  Vec3f a = toView(from - origin_) + noise_.calibration(), b = toView(to - origin_) + noise_.calibration();
   const auto visible = [this](const Vec3f& p, soccer::Polar& polar) {
     return p.norm() > kMinDistance && measure(p, polar);
   };
@@ -157,13 +175,13 @@ void RestrictedVisionPerceptor::writeRobot(const VisibleObjects::Robot& robot, P
           .pair("id", robot.state->unum());
   };
   for (const VisibleObjects::Object& part : eye_.objects().partsOf(robot)) {
-    if (!see(part.position, polar)) continue;
+    if (!see(part.position, part.body, polar)) continue;
     open();
     out.open(part.state->id());
     writePolar(out, polar);
     out.close();
   }
-  if (robot.parts == 0 && robot.agent != eye_.agent() && see(robot.position, polar)) {
+  if (robot.parts == 0 && robot.agent != eye_.agent() && see(robot.position, robot.body, polar)) {
     open();
     writePolar(out, polar);
   }
@@ -192,7 +210,7 @@ void RestrictedVisionPerceptor::sense(Predicates& out, const Event&) {
   soccer::Polar polar;
   out.open(predicateName_);
   for (const VisibleObjects::Object& o : objects.field()) {
-    if (!see(o.position, polar)) continue;
+    if (!see(o.position, o.body, polar)) continue;
     out.open(o.state->perceptName());
     writePolar(out, polar);
     out.close();

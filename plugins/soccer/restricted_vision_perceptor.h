@@ -40,6 +40,8 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   }
   void setPanRange(int low, int high) { pan_ = {std::min(low, high), std::max(low, high)}; }
   void setTiltRange(int low, int high) { tilt_ = {std::min(low, high), std::max(low, high)}; }
+  bool occlusion() const { return eye_.occlusion(); }
+  void setOcclusion(bool on) { eye_.setOcclusion(on); }
   void setNoise(bool on) { noise_.on = on; }
   bool noisy() const { return noise_.on; }
   std::vector<int> cones() const { return {cone_[0], cone_[1]}; }
@@ -60,9 +62,11 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   bool isClearlyOutside(const Vec3f& view) const;
   /// Polar coordinates of a point in the view frame [m]. Returns false when it is outside of the cone.
   bool measure(const Vec3f& view, soccer::Polar& out);
-  /// Measures a point (world frame [m]), with noise. Returns false when it is too near, out of range or outside of the
-  /// cone.
-  bool see(const Vec3f& point, soccer::Polar& out);
+  /// Measures an object (world frame [m]), with noise. Returns false when it is too near, out of range, outside of the
+  /// cone or hidden. `body`: that of the object; nullptr: none.
+  bool see(const Vec3f& point, const IRigidBody* body, soccer::Polar& out);
+  /// Shortens a line to the part between its first and its last visible point. Returns false when there are none.
+  bool uncover(Vec3f& begin, Vec3f& end) const;
   /// Measures the ends of the visible part of a line, with noise. Returns false when nothing of it is visible.
   bool seeLine(const soccer::VisibleObjects::FieldLine& line, soccer::Polar& begin, soccer::Polar& end);
   void beginSense();

@@ -141,6 +141,8 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .unit("m")
       .min(0)
       .doc("Objects and players farther away are not seen by any robot; 0: as in the robots' scene files.");
+  d.property("VisionOcclusion", &S::visionOcclusion)
+      .doc("What is behind a collider is not seen; false: as the robots' scene files say, which is everything.");
   d.property("VisionNoise", &S::visionNoise).doc("False: vision has no noise, whatever the robots' scene files say.");
   d.property("Cheats", &S::cheats)
       .doc(

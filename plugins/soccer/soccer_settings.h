@@ -42,7 +42,7 @@ class SoccerSettings : public Node, public IVariables {
   double beamNoiseXY = 0.05, beamNoiseAngle = 10;
   bool beamWithinFieldWidth = true;
   int sayMsgSize = 20;
-  bool visionNoise = true, fieldLinesSeen = true, cheats = false;
+  bool visionNoise = true, visionOcclusion = false, fieldLinesSeen = true, cheats = false;
   int visionInterval = 0;
   double visionRange = 0;
   // Pass mode

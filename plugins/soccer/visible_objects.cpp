@@ -6,6 +6,10 @@
 
 namespace spark::soccer {
 
+namespace {
+IRigidBody* bodyOf(const Transform* frame) { return frame ? frame->childOf<IRigidBody>() : nullptr; }
+}  // namespace
+
 void VisibleObjects::update(Kernel& kernel, float range) {
   if (tree_.changed(kernel.root())) collect(kernel);
   updatePositions();
@@ -43,7 +47,7 @@ void VisibleObjects::collect(Kernel& kernel) {
   for (ObjectState* o : all) {
     auto* inner = o->ancestor<AgentAspect>();
     if (!inner) {
-      if (!o->perceptName().empty()) field_.push_back({o, o->transform()});
+      if (!o->perceptName().empty()) field_.push_back({o, o->transform(), bodyOf(o->transform())});
       continue;
     }
     AgentAspect* agent = &inner->outermost();
@@ -53,8 +57,9 @@ void VisibleObjects::collect(Kernel& kernel) {
     if (auto state = o->as<AgentState>()) {
       robot.state = state;
       robot.frame = state->transform();
+      robot.body = bodyOf(robot.frame);
     } else if (!o->id().empty()) {
-      parts_.push_back({o, o->transform()});
+      parts_.push_back({o, o->transform(), bodyOf(o->transform())});
       ++robot.parts;
     }
   }

@@ -10,6 +10,7 @@
 
 #include "agent_state.h"
 #include "api/agents.h"
+#include "api/physics.h"
 
 namespace spark::soccer {
 
@@ -30,6 +31,7 @@ class VisibleObjects {
   struct Object {
     const ObjectState* state;
     const Transform* frame = nullptr;  ///< the transform above `state`; nullptr: none
+    IRigidBody* body = nullptr;        ///< of that transform
     Vec3f position = Vec3f::Zero();    ///< world frame [m]
   };
   /// A robot: its state and its visible parts. A robot without such parts is seen at the position of its state.
@@ -37,6 +39,7 @@ class VisibleObjects {
     AgentAspect* agent;
     AgentState* state = nullptr;
     const Transform* frame = nullptr;  ///< the transform above `state`
+    IRigidBody* body = nullptr;        ///< of that transform
     Vec3f position = Vec3f::Zero();    ///< of `state`, world frame [m]
     std::uint32_t firstPart = 0, parts = 0;
   };

@@ -48,6 +48,7 @@ void EyeContext::refresh(const SceneNode& eye) {
   agent_ = aspect ? &aspect->outermost() : nullptr;
   state_ = nullptr;
   settings_ = kernel.root().find<SoccerSettings>();
+  physics_ = kernel.root().find<IPhysicsServer>();
   if (!settings_ && !own_) own_ = std::make_unique<VisibleObjects>();
   objects_ = settings_ ? &settings_->visibleObjects() : own_.get();
 }
@@ -57,10 +58,16 @@ void EyeContext::findState() {
   state_ = objects_->stateOf(agent_);
 }
 
+void EyeContext::prepareOcclusion() {
+  hides_ = (occlusion_ || (settings_ && settings_->visionOcclusion)) && physics_ && physics_->hasWorld();
+  if (hides_) physics_->prepareRays();
+}
+
 void EyeContext::share(const SceneNode& eye, std::uint64_t round, float range) {
   refresh(eye);
   range_ = limitRange(range);
   objects_->share(eye.kernel(), round, range_);
+  prepareOcclusion();
   findState();
   shared_ = true;
 }
@@ -73,6 +80,7 @@ void EyeContext::update(const SceneNode& eye, float range) {
   refresh(eye);
   range_ = limitRange(range);
   objects_->update(eye.kernel(), range_);
+  prepareOcclusion();
   findState();
 }
 

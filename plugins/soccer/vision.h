@@ -91,6 +91,15 @@ class EyeContext {
   void beginSense(const SceneNode& eye, float range);
   /// Updates the visible objects; between cycles, in the simulation's thread.
   void update(const SceneNode& eye, float range);
+  /// `on`: objects behind a collider are not seen. Call it before share().
+  void setOcclusion(bool on) { occlusion_ = on; }
+  bool occlusion() const { return occlusion_; }
+  /// True if an object at `point`, with that body (nullptr: none), is hidden from `eye` (world frame [m]).
+  bool isHidden(const Vec3f& eye, const Vec3f& point, const IRigidBody* body) const {
+    return hides_ && physics_->isHidden(eye.cast<double>(), point.cast<double>(), body, agent_);
+  }
+  /// True if something may be hidden in this sense phase.
+  bool hides() const { return hides_; }
   /// Range of the eye, limited by Soccer.VisionRange [m].
   float range() const { return range_; }
 
@@ -106,6 +115,8 @@ class EyeContext {
 
  private:
   void findState();
+  /// Decides whether objects can be hidden, and prepares for the rays.
+  void prepareOcclusion();
   float limitRange(float range) const {
     return settings_ && settings_->visionRange > 0 ? std::min(range, static_cast<float>(settings_->visionRange))
                                                    : range;
@@ -119,6 +130,8 @@ class EyeContext {
   AgentAspect* agent_ = nullptr;
   AgentState* state_ = nullptr;
   SoccerSettings* settings_ = nullptr;
+  IPhysicsServer* physics_ = nullptr;
+  bool occlusion_ = false, hides_ = false;
   std::vector<std::uint32_t> near_;
 };
 

@@ -4,10 +4,10 @@ namespace spark {
 
 using soccer::VisibleObjects;
 
-bool VisionPerceptor::see(const Vec3f& point, soccer::Polar& out) {
+bool VisionPerceptor::see(const Vec3f& point, const IRigidBody* body, soccer::Polar& out) {
   const Vec3f offset = point - origin_;
   const float distance = offset.norm();
-  if (distance <= soccer::kMinDistance || distance > eye_.range()) return false;
+  if (distance <= soccer::kMinDistance || distance > eye_.range() || eye_.isHidden(origin_, point, body)) return false;
   Vec3f relative = soccer::toTeamFrame(side(), offset);
   if (!staticAxis_ && transform()) relative = transform()->world().block<3, 3>(0, 0).transpose() * offset;
   out = soccer::toPolar(relative + noise_.calibration());
@@ -25,14 +25,14 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
   soccer::Polar polar;
   out.open(predicateName_);
   for (const VisibleObjects::Object& o : objects.field()) {
-    if (!see(o.position, polar)) continue;
+    if (!see(o.position, o.body, polar)) continue;
     out.open(o.state->perceptName());
     writePolar(out, polar);
     out.close();
   }
   for (const std::uint32_t i : eye_.robotsNear(origin_)) {
     const VisibleObjects::Robot& r = objects.robots()[i];
-    if (r.agent == eye_.agent() || r.state->side() == soccer::Side::none || !see(r.position, polar)) continue;
+    if (r.agent == eye_.agent() || r.state->side() == soccer::Side::none || !see(r.position, r.body, polar)) continue;
     out.open(r.state->perceptName()).pair("team", std::string_view(r.state->team())).pair("id", r.state->unum());
     writePolar(out, polar);
     out.close();

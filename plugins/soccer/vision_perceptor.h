@@ -20,6 +20,8 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
     d.property("range", &V::range_).unit("m").min(0).doc("Objects farther away are not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
         .doc("Angles are relative to the x axis of the team's frame; false: in the frame of the transform above.");
+    d.property("occlusion", &V::occlusion, &V::setOcclusion)
+        .doc("What is behind a collider is not seen. Soccer.VisionOcclusion switches it on for all.");
     d.property("senseMyPos", &V::senseMyPos_).doc("Reports its own position, too: (mypos x y z).");
     d.method("addNoise", &V::setNoise).parameters({"on"}).doc("Noise on or off.");
     d.method("useRandomNoise", &V::setRandom).parameters({"on"}).doc("False: only the constant calibration error.");
@@ -43,6 +45,8 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
   void loadState(StateReader& in) override { noise_.load(in); }
 
  private:
+  bool occlusion() const { return eye_.occlusion(); }
+  void setOcclusion(bool on) { eye_.setOcclusion(on); }
   void setNoise(bool on) { noise_.on = on; }
   void setRandom(bool on) { randomNoise_ = on; }
   bool noisy() const { return noise_.on; }
@@ -54,8 +58,8 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
   soccer::Side side() const { return eye_.state() ? eye_.state()->side() : soccer::Side::none; }
   /// True when angles are relative to the team's frame, false: to the frame of the transform above.
   bool usesTeamFrame() const { return staticAxis_ || !transform(); }
-  /// Measures a point (world frame [m]). Returns false when it is too near or out of range.
-  bool see(const Vec3f& point, soccer::Polar& out);
+  /// Measures an object (world frame [m]). Returns false when it is too near, out of range or hidden.
+  bool see(const Vec3f& point, const IRigidBody* body, soccer::Polar& out);
 
   soccer::EyeContext eye_;
   soccer::VisionNoise noise_{*this};

@@ -66,10 +66,6 @@ Predicates predicatesOf(std::string_view text) {
   return out;
 }
 
-const World& worldOf(std::string_view name) {
-  return *std::find_if(worlds().begin(), worlds().end(), [name](const World& w) { return w.name == name; });
-}
-
 /// A humanoid match whose monitor frame is encoded, with the parsers and encoders.
 class Stage {
  public:

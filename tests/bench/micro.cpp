@@ -9,6 +9,7 @@ namespace spark::bench {
 void runMicro(bool json) {
   registerJobs();
   registerBytes();
+  registerRays();
   std::string program = "sparkbench", format = json ? "--benchmark_format=json" : "--benchmark_format=console";
   char* arguments[] = {program.data(), format.data(), nullptr};
   int count = 2;

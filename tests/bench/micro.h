@@ -9,6 +9,8 @@ void runMicro(bool json);
 
 /// Registers the cost of waking the kernel's threads for jobs, with and without work.
 void registerJobs();
+/// Registers the cost of the rays of 22 humanoids.
+void registerRays();
 /// Registers the cost of messages: writing percepts and monitor frames, reading actions.
 void registerBytes();
 

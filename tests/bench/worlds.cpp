@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace spark::bench {
 
 namespace {
@@ -29,6 +31,10 @@ const std::vector<World>& worlds() {
     return out;
   }();
   return all;
+}
+
+const World& worldOf(std::string_view name) {
+  return *std::find_if(worlds().begin(), worlds().end(), [name](const World& w) { return w.name == name; });
 }
 
 }  // namespace spark::bench

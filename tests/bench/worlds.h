@@ -3,6 +3,7 @@
 /// The standard worlds that are measured.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spark::bench {
@@ -24,5 +25,7 @@ struct World {
 
 /// All worlds, in the order of the table.
 const std::vector<World>& worlds();
+/// The one of that name, which must exist.
+const World& worldOf(std::string_view name);
 
 }  // namespace spark::bench

@@ -1,0 +1,171 @@
+#include "ray_scene.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "shape_ray.h"
+
+namespace spark::physics {
+
+using engine::Geom;
+using engine::Index;
+using engine::Shape;
+using engine::ShapeDescription;
+
+namespace {
+
+/// FNV-1a (Fowler, Noll, Vo).
+template <class T>
+std::uint64_t hashOf(const std::vector<T>& numbers, std::uint64_t hash) {
+  for (const T& number : numbers) {
+    std::uint64_t bits = 0;
+    std::memcpy(&bits, &number, sizeof number);
+    hash = (hash ^ bits) * 0x100000001b3;
+  }
+  return hash;
+}
+
+/// The box around a shape in its own frame, of shapes other than planes and meshes.
+Box boundsOf(const ShapeDescription& s, const Mat3& rotation, const Vec3& center) {
+  Vec3 half;
+  const Vec3 axis = rotation.col(2).cwiseAbs();
+  switch (s.shape) {
+    case Shape::box:
+      half = rotation.cwiseAbs() * (s.lengths / 2);
+      break;
+    case Shape::capsule:
+      half = axis * (s.length / 2) + Vec3::Constant(s.radius);
+      break;
+    case Shape::cylinder:
+      half = axis * (s.length / 2) + (Vec3::Ones() - axis.cwiseProduct(axis)).cwiseMax(0).cwiseSqrt() * s.radius;
+      break;
+    default:
+      half = Vec3::Constant(s.radius);
+  }
+  return {center - half, center + half};
+}
+
+/// The box around a box that is moved.
+Box moved(const Box& box, const Mat3& rotation, const Vec3& position) {
+  const Vec3 center = position + rotation * ((box.low + box.high) / 2),
+             half = rotation.cwiseAbs() * ((box.high - box.low) / 2);
+  return {center - half, center + half};
+}
+
+/// Larger by more than the rounding of a ray's intersection, so that no hit at a corner is lost.
+Box padded(const Box& box) {
+  const Vec3 pad = Vec3::Constant(1e-9) + 1e-12 * box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs());
+  return {box.low - pad, box.high + pad};
+}
+
+void buildMesh(BoxTree& tree, const ShapeDescription& s) {
+  std::vector<Box> boxes(s.triangles.size() / 3);
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const Vec3 a = vertexOf(s, 3 * i), b = vertexOf(s, 3 * i + 1), c = vertexOf(s, 3 * i + 2);
+    boxes[i] = padded({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
+  }
+  tree.build(boxes);
+}
+
+}  // namespace
+
+void RayScene::clear() {
+  at_ = {};
+  placed_.clear();
+  meshes_.clear();
+}
+
+void RayScene::update(const engine::Model& model, const engine::State& state, std::uint64_t poses) {
+  const Stamp now = stamp(model, poses);
+  if (at_ == now) return;
+  if (at_.model != now.model || at_.structure != now.structure || at_.collision != now.collision) collect(model);
+  place(model, state);
+  at_ = now;
+}
+
+/// Lists the geoms, and builds the trees of new meshes.
+void RayScene::collect(const engine::Model& model) {
+  placed_.clear();
+  std::vector<Mesh> meshes;
+  for (Index i = 0; i < model.geoms.size(); ++i) {
+    const Geom& g = model.geoms[i];
+    if (!isQueried(g)) continue;
+    int mesh = -1;
+    if (g.shape.shape == Shape::mesh) {
+      const std::uint64_t contents = hashOf(g.shape.triangles, hashOf(g.shape.vertices, 0xcbf29ce484222325));
+      const auto known = std::find_if(meshes_.begin(), meshes_.end(),
+                                      [&](const Mesh& m) { return m.id == g.id && m.contents == contents; });
+      mesh = static_cast<int>(meshes.size());
+      meshes.push_back(known != meshes_.end() ? std::move(*known) : Mesh{g.id, contents, {}});
+      if (meshes.back().triangles.empty()) buildMesh(meshes.back().triangles, g.shape);
+      if (meshes.back().triangles.empty()) continue;  // without triangles nothing is met
+    }
+    placed_.push_back({&g, i, mesh, Vec3::Zero(), Mat3::Identity()});
+  }
+  meshes_ = std::move(meshes);
+  const auto planes = std::stable_partition(placed_.begin(), placed_.end(),
+                                            [](const Placed& p) { return p.geom->shape.shape != Shape::plane; });
+  bounded_ = static_cast<std::size_t>(planes - placed_.begin());
+  boxes_.resize(bounded_);
+}
+
+void RayScene::place(const engine::Model& model, const engine::State& state) {
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    Placed& p = placed_[i];
+    const Pose pose = poseOf(model, state, p.index);
+    p.position = pose.position;
+    p.toShape = pose.rotation.transpose();
+    if (i < bounded_)
+      boxes_[i] = padded(p.mesh < 0 ? boundsOf(p.geom->shape, pose.rotation, pose.position)
+                                    : moved(meshes_[static_cast<std::size_t>(p.mesh)].triangles.bounds(), pose.rotation,
+                                            pose.position));
+  }
+  tree_.build(boxes_);
+}
+
+/// Sets `hit` if the ray meets the geom within `length`.
+bool RayScene::cast(const Placed& p, const Vec3& from, const Vec3& direction, double length, GeomHit& hit) const {
+  ShapeRay ray{p.toShape * (from - p.position), p.toShape * direction, length};
+  if (p.mesh < 0)
+    castShape(ray, p.geom->shape);
+  else
+    meshes_[static_cast<std::size_t>(p.mesh)].triangles.meet(ray.from, ray.direction, length, [&](std::uint32_t i) {
+      castTriangle(ray, p.geom->shape, i);
+      return ray.nearest;
+    });
+  if (ray.hit) hit = {p.index, ray.nearest, p.toShape.transpose() * ray.normal};
+  return ray.hit;
+}
+
+template <class Visit>
+void RayScene::visitAlong(const Vec3& from, const Vec3& direction, double length, Visit&& visit) const {
+  for (std::size_t i = bounded_; i < placed_.size(); ++i)
+    if ((length = visit(placed_[i])) < 0) return;
+  tree_.meet(from, direction, length, [&](std::uint32_t i) { return visit(placed_[i]); });
+}
+
+std::optional<GeomHit> RayScene::castRay(const Vec3& from, const Vec3& direction, double length,
+                                         const Accepts& accepts) const {
+  GeomHit nearest{engine::kNone, length, Vec3::Zero()};
+  visitAlong(from, direction, length, [&](const Placed& p) {
+    GeomHit hit;
+    if (cast(p, from, direction, nearest.distance, hit) && (!accepts || accepts(*p.geom)) &&
+        (hit.distance < nearest.distance || nearest.geom == engine::kNone || p.index > nearest.geom))
+      nearest = hit;
+    return nearest.distance;
+  });
+  if (nearest.geom == engine::kNone) return std::nullopt;
+  return nearest;
+}
+
+bool RayScene::meets(const Vec3& from, const Vec3& direction, double length, const Accepts& accepts) const {
+  bool met = false;
+  visitAlong(from, direction, length, [&](const Placed& p) {
+    GeomHit hit;
+    met = cast(p, from, direction, length, hit) && (!accepts || accepts(*p.geom));
+    return met ? -1.0 : length;
+  });
+  return met;
+}
+
+}  // namespace spark::physics

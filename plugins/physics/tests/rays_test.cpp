@@ -1,0 +1,171 @@
+// Rays by the thousand: RayScene against queries that test every geom, and against a search that knows no rays.
+#include <Eigen/Geometry>
+#include <catch2/catch.hpp>
+#include <random>
+
+#include "../ray_scene.h"
+#include "../shape_ray.h"
+
+using namespace spark;
+using namespace spark::physics;
+using engine::Shape;
+
+namespace {
+
+/// A scene of shapes at random poses that stand still.
+struct RandomScene {
+  std::mt19937 random;
+  engine::Model model;
+  engine::State state;
+
+  explicit RandomScene(unsigned seed, int shapes) : random(seed) {
+    for (int i = 0; i < shapes; ++i) add(randomShape());
+    if (number(0, 1) < 0.3) add({.shape = Shape::plane, .plane = {number(-1, 1), number(-1, 1), 3, number(-9, -6)}});
+  }
+  double number(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
+  Vec3 vector(double size) {
+    const double x = number(-size, size), y = number(-size, size), z = number(-size, size);
+    return {x, y, z};
+  }
+  Mat3 rotation() {
+    const Vec3 v = vector(1);
+    return Eigen::Quaterniond(number(-1, 1), v.x(), v.y(), v.z()).normalized().toRotationMatrix();
+  }
+  void add(const engine::ShapeDescription& shape) {
+    engine::Geom g;
+    g.id = model.geoms.size() + 1;
+    g.shape = shape;
+    g.offset = {vector(4), rotation()};
+    model.geoms.push_back(g);
+    ++model.structure;
+  }
+  engine::ShapeDescription randomShape() {
+    switch (std::uniform_int_distribution<int>(0, 4)(random)) {
+      case 0:
+        return {.shape = Shape::box, .lengths = vector(1).cwiseAbs() + Vec3::Constant(0.05)};
+      case 1:
+        return {.shape = Shape::sphere, .radius = number(0.05, 1)};
+      case 2:
+        return {.shape = Shape::capsule, .radius = number(0.05, 0.5), .length = number(0.05, 2)};
+      case 3:
+        return {.shape = Shape::cylinder, .radius = number(0.05, 0.7), .length = number(0.05, 2)};
+      default:
+        return tetrahedron();
+    }
+  }
+  engine::ShapeDescription tetrahedron() {
+    engine::ShapeDescription s{.shape = Shape::mesh};
+    for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
+      const Vec3 v = 0.6 * corner + vector(0.3);
+      s.vertices.insert(s.vertices.end(), {v.x(), v.y(), v.z()});
+    }
+    s.triangles = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
+    return s;
+  }
+  /// Distance from a point to the nearest surface [m]; 0 or less inside of a shape other than a mesh.
+  double distanceToNearest(const Vec3& point) const {
+    double nearest = HUGE_VAL;
+    for (engine::Index i = 0; i < model.geoms.size(); ++i) {
+      const Pose pose = poseOf(model, state, i);
+      nearest =
+          std::min(nearest, distanceTo(model.geoms[i].shape, pose.rotation.transpose() * (point - pose.position)));
+    }
+    return nearest;
+  }
+  /// The least distance to a surface on the way between two points [m], by steps that no surface can be within (Hart
+  /// 1996, "Sphere tracing"); ends at 1e-9.
+  double clearance(const Vec3& from, const Vec3& to) const {
+    const double length = (to - from).norm();
+    double least = HUGE_VAL;
+    for (double t = 0; t < length && least > 1e-9;) {
+      const double distance = distanceToNearest(from + t / length * (to - from));
+      least = std::min(least, distance);
+      t += std::max(distance, 1e-9);
+    }
+    return least;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("RayScene finds the geom, the distance and the normal that a test of every geom finds", "[senses]") {
+  RayScene rays;
+  int hits = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    RandomScene s(seed, 1 + static_cast<int>(seed % 60));
+    rays.clear();  // the next model is at the same address
+    rays.update(s.model, s.state, seed);
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 from = s.vector(6), direction = i < 3 ? Vec3(Vec3::Unit(i)) : Vec3(s.vector(1).normalized());
+      const double length = i % 4 == 0 ? HUGE_VAL : s.number(0, 12);
+      const Accepts even = [](const engine::Geom& g) { return g.id % 2 == 0; };
+      for (const Accepts& accepts : {Accepts(), even}) {
+        const auto every = castRay(s.model, s.state, from, direction, length, accepts);
+        const auto found = rays.castRay(from, direction, length, accepts);
+        CAPTURE(seed, i);
+        REQUIRE(found.has_value() == every.has_value());
+        REQUIRE(rays.meets(from, direction, length, accepts) == every.has_value());
+        if (!every) continue;
+        ++hits;
+        CHECK(found->geom == every->geom);
+        CHECK(found->distance == Approx(every->distance).margin(1e-12));
+        CHECK((found->normal - every->normal).norm() < 1e-9);
+      }
+    }
+  }
+  CHECK(hits > 1000);
+}
+
+TEST_CASE("what rays call hidden in 10,000 random scenes is what a search without rays calls hidden", "[senses]") {
+  RayScene rays;
+  int hidden = 0, compared = 0, grazed = 0;
+  for (unsigned seed = 0; compared < 10000; ++seed) {
+    RandomScene s(seed, 20);
+    const Vec3 eye = s.vector(4), point = s.vector(4);
+    // Both are outside of all shapes, as an eye is.
+    rays.clear();
+    rays.update(s.model, s.state, seed);
+    if (s.distanceToNearest(eye) < 0.01 || s.distanceToNearest(point) < 0.01) continue;
+    ++compared;
+    const double clearance = s.clearance(eye, point);
+    const bool met = rays.meets(eye, (point - eye).normalized(), (point - eye).norm(), {});
+    if (met != (clearance <= 1e-8)) {
+      // A ray that only touches a surface, to the digits of the search, is neither.
+      CAPTURE(seed, clearance, met);
+      REQUIRE(clearance < 1e-6);
+      ++grazed;
+    }
+    hidden += met;
+  }
+  WARN(hidden << " of " << compared << " points are hidden, " << grazed << " rays graze a surface within 1 um");
+  CHECK(hidden > 1000);
+  CHECK(hidden < 8000);
+  CHECK(grazed == 0);
+}
+
+TEST_CASE("RayScene follows bodies, changed shapes and removed geoms", "[senses]") {
+  RandomScene s(1, 0);
+  s.add({.shape = Shape::sphere, .radius = 0.5});
+  s.model.geoms[0].offset = {{3, 0, 0}, Mat3::Identity()};
+  RayScene rays;
+  const auto distance = [&](std::uint64_t poses) {
+    rays.update(s.model, s.state, poses);
+    const auto hit = rays.castRay(Vec3::Zero(), Vec3::UnitX(), 10, {});
+    return hit ? hit->distance : -1;
+  };
+  CHECK(distance(1) == Approx(2.5));
+  s.model.geoms[0].offset.position.x() = 5;
+  CHECK(rays.isCurrent(s.model, 1));
+  CHECK_FALSE(rays.isCurrent(s.model, 2));
+  CHECK(distance(2) == Approx(4.5));
+  s.model.geoms[0].shape = s.tetrahedron();
+  ++s.model.collision;
+  CHECK_FALSE(rays.isCurrent(s.model, 2));
+  CHECK(distance(2) == Approx(castRay(s.model, s.state, Vec3::Zero(), Vec3::UnitX(), 10, {})->distance));
+  s.model.geoms[0].collides = false;
+  ++s.model.collision;
+  CHECK(distance(2) == -1);
+  s.model.geoms.clear();
+  ++s.model.structure;
+  CHECK(distance(2) == -1);
+}

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+#include "api/agents.h"
+#include "api/physics.h"
+
+namespace spark {
+
+/// Base of sensors that measure distances with rays. Rays start at the sensor's transform and look along its y axis, as
+/// heads do. They meet everything that collides, except the sensor's own agent.
+class RayPerceptor : public Perceptor, public ISharedView {
+  SPARK_CLASS(RayPerceptor, Perceptor)
+ public:
+  static void describe(Description<RayPerceptor>& d) {
+    using R = RayPerceptor;
+    d.doc("Measures distances with rays.");
+    d.abstract();
+    d.implements<ISharedView>();
+    d.link(&R::physics_, At<IPhysicsServer>());
+    d.property("minRange", &R::minRange_)
+        .unit("m")
+        .min(0)
+        .doc("Smallest distance; nearer surfaces are reported at it.");
+    d.property("maxRange", &R::maxRange_)
+        .unit("m")
+        .min(0)
+        .doc("Largest distance, which is reported, too, where there is no surface.");
+    d.method("setRange", &R::setRange).parameters({"min [m]", "max [m]"}).doc("Sets minRange and maxRange.");
+  }
+  void share(std::uint64_t) override {
+    if (IPhysicsServer* const physics = casts() ? physics_.get() : nullptr) physics->prepareRays();
+  }
+
+ protected:
+  /// False for sensors that measure without rays.
+  virtual bool casts() const { return true; }
+  /// Starts a measurement at the present pose of the transform.
+  void beginMeasuring() {
+    if (tree_.changed(*this)) {
+      auto* const aspect = ancestor<AgentAspect>();
+      agent_ = aspect ? &aspect->outermost() : nullptr;
+    }
+    ready_ = physics_ && physics_->hasWorld() && transform();
+    if (ready_) pose_ = toPose(transform()->world());
+  }
+  /// The first surface in a direction of the sensor's frame (any length above 0), within maxRange.
+  std::optional<RayHit> cast(const Vec3& direction) const {
+    if (!ready_) return std::nullopt;
+    return physics_->castRay(pose_.position, pose_.rotation * direction, maxRange_, agent_);
+  }
+  /// The distance to report [m].
+  double distance(const std::optional<RayHit>& hit) const {
+    return hit ? std::max(minRange_, hit->distance) : maxRange_;
+  }
+
+  double minRange_ = 0, maxRange_ = 10;
+
+ private:
+  void setRange(double min, double max) { minRange_ = min, maxRange_ = max; }
+
+  Link<IPhysicsServer> physics_;
+  TreeWatch tree_;
+  const Node* agent_ = nullptr;
+  bool ready_ = false;  ///< there is something to measure
+  Pose pose_;
+};
+
+}  // namespace spark
