@@ -31,7 +31,8 @@ class IParser {
 };
 
 /// Turns a subtree into an agent. Game control creates one per connection (`/usr/scene/AgentAspect<n>`); robots of the
-/// installed base nest a second one in it. Registered by `gamecontrol`.
+/// installed base nest a second one in it. One that a config or a script makes below an object, with a Behavior below
+/// it, makes the object an agent; when it is removed, the object is an object again. Registered by `gamecontrol`.
 class AgentAspect : public Transform {
   SPARK_CLASS(AgentAspect, Transform)
  public:
@@ -43,6 +44,13 @@ class AgentAspect : public Transform {
   int number() const { return number_; }
   /// Called once by game control.
   void setNumber(int n) { number_ = n; }
+  /// The agent's own part of the scene: the outermost aspect, or the object that it makes an agent, which is the nearest
+  /// transform above it.
+  Node& object() {
+    AgentAspect& top = outermost();
+    Transform* const above = top.transform();
+    return above ? static_cast<Node&>(*above) : top;
+  }
   /// The outermost aspect above, or this one.
   AgentAspect& outermost() {
     AgentAspect* top = this;
@@ -195,6 +203,31 @@ class ControlAspect : public Node {
   bool enabled_ = true;
 };
 
+/// What an agent asks for while it runs: a perceptor, an effector, or a scene file with some of them.
+struct PartRequest {
+  enum class Kind { perceptor, effector, scene } kind;
+  std::string_view type;  ///< name of the class; of a scene: of the file
+  std::string_view name;  ///< of the new node; "" for a scene
+  Node& parent;           ///< where the new node is to be: the agent's aspect or a node below it
+};
+
+/// Sees what agents ask for and what they do, and may refuse it. Offered by control aspects; one that is disabled sees
+/// nothing. It may also call IGameControl::disqualify(). Simulation thread.
+class IAgentJudge {
+ public:
+  SPARK_INTERFACE(IAgentJudge, 1);
+  virtual ~IAgentJudge() = default;
+  /// Judges a request before the node is made, in the prepare phase. Returns "" or one line that says why it is
+  /// refused; the agent gets this line. Must not throw.
+  virtual std::string judgeRequest(AgentAspect&, const PartRequest&) { return {}; }
+  /// Judges an action before `effector` executes it, in the act phase, in the order of the agent's message. Returns ""
+  /// or one line that says why it is refused; the log gets this line. Must not throw.
+  virtual std::string judgeAction(AgentAspect&, const Effector& effector, const Element& action) {
+    (void)effector, (void)action;
+    return {};
+  }
+};
+
 /// The program of an agent that runs inside the host: a C++ class or Lua. Below /usr/agent. Registered by
 /// `gamecontrol`.
 class Behavior : public Node {
@@ -213,13 +246,17 @@ class Behavior : public Node {
 /// Game control: connects agents to the simulation. At /sys/server/gamecontrol.
 class IGameControl {
  public:
-  SPARK_INTERFACE(IGameControl, 1);
+  SPARK_INTERFACE(IGameControl, 2);
   static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
   /// The agents, sorted by number. Valid until an agent is added or removed.
   virtual const std::vector<AgentAspect*>& agents() const = 0;
   /// Removes the agent at the start of the next act phase; `close`: closes its connection, too.
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
+  /// Removes the agent like removeAgent(), closes its connection, and logs why: one line without a full stop at its end.
+  virtual void disqualify(AgentAspect& agent, std::string_view why) = 0;
+  /// Asks all judges (IAgentJudge) about a request. Returns "" if nobody refuses it, else the reason.
+  virtual std::string judgeRequest(AgentAspect& agent, const PartRequest& request) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;
   /// The agent's last percepts; nullptr before the first and for an aspect that is no agent. Valid until the next sense

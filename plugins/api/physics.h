@@ -49,6 +49,13 @@ class IRigidBody {
   virtual Transform* bodyTransform() const = 0;
 };
 
+/// True if the transform has a body of its own.
+inline bool hasBody(const Transform& transform) { return transform.childOf<IRigidBody>() != nullptr; }
+/// Route to the body that a sensor or an effector belongs to: that of the nearest transform above it that has one.
+inline Route<IRigidBody> BodyAround() {
+  return Above<Transform>().where<hasBody>("Transform with a body").child<IRigidBody>();
+}
+
 /// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:

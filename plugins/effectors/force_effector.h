@@ -13,7 +13,7 @@ class ForceEffector : public Effector {
         "Applies a force to the body above or beside it during one step: (force x y z) in N, world frame. The last "
         "command of a cycle counts.");
     d.link(&ForceEffector::above_, Above<IRigidBody>());
-    d.link(&ForceEffector::beside_, Above<Transform>().child<IRigidBody>());
+    d.link(&ForceEffector::beside_, BodyAround());
     d.on<&ForceEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "force"; }

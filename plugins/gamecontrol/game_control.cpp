@@ -19,6 +19,11 @@ void GameControl::describe(Description<GameControl>& d) {
   d.doc("Creates agents for connections and behaviours, dispatches their actions, calls their perceptors.");
   d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
       .doc("Reads the identity of agents that join; without it they have none.");
+  d.link(&GameControl::judges_, Child<IAgentJudge>()).doc("Judge what agents ask for and do.");
+  d.property("requests", &GameControl::requests_)
+      .doc(
+          "Agents that join from now on may ask for perceptors and effectors while they run: (request (perceptor "
+          "<class>) (name <name>)). Control aspects decide what they get.");
   d.property("createEffector", &GameControl::createEffector_)
       .doc("Class of the effector with which an agent requests its robot.");
   d.property("expect", &GameControl::expect_)
@@ -176,6 +181,30 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
   }
 }
 
+void GameControl::disqualify(AgentAspect& agent, std::string_view why) {
+  logInfo(fmt::format("Agent {} is disqualified: {}.", agent.number(), why));
+  for (const auto& p : participants_) {
+    if (p->aspect() != &agent) continue;
+    if (p->connection()) p->connection()->close(fmt::format("it was disqualified: {}", why));
+    p->leave();
+  }
+}
+
+void GameControl::findJudges() {
+  activeJudges_.clear();
+  for (const Found<IAgentJudge>& judge : judges_) {
+    const auto rule = judge.leaf->as<ControlAspect>();
+    if (!rule || rule->enabled()) activeJudges_.push_back(judge.object);
+  }
+}
+
+std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& request) {
+  findJudges();
+  for (IAgentJudge* judge : activeJudges_)
+    if (std::string why = judge->judgeRequest(agent, request); !why.empty()) return why;
+  return {};
+}
+
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
   if (holding())
@@ -240,9 +269,10 @@ void GameControl::takeTurn(const Event& event) {
     deliver();
   else
     for (const auto& p : participants_) p->promote();
+  findJudges();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
-    participants_[i]->execute(agentLog(), cycle_);
+    participants_[i]->execute(agentLog(), cycle_, activeJudges_);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }
@@ -300,8 +330,16 @@ void GameControl::joinBehaviors() {
     return std::any_of(participants_.begin(), participants_.end(), [b](const auto& p) { return p->behavior() == b; }) ||
            std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end();
   };
-  for (Behavior* b : behaviors)
-    if (!known(b) && !join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(b->id());
+  const std::size_t atHome = behaviors.size();
+  auto* const server = kernel().root().find<ISceneServer>();
+  if (Node* const scene = server ? server->activeScene() : nullptr) scene->collect(behaviors);
+  for (std::size_t i = 0; i < behaviors.size(); ++i) {
+    Behavior* const b = behaviors[i];
+    // In the scene only those that are below an aspect of their own make an agent: of the object above the aspect.
+    auto* const aspect = i < atHome ? nullptr : b->ancestor<AgentAspect>();
+    if (known(b) || (i >= atHome && (!aspect || aspect->number() != 0 || &aspect->outermost() != aspect))) continue;
+    if (!join(std::make_unique<Participant>(*b), aspect)) refusedBehaviors_.push_back(b->id());
+  }
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
 }
 
@@ -314,20 +352,23 @@ void GameControl::joinNewcomers() {
     if (!p->leaving()) join(std::move(p));
 }
 
-/// Creates the agent's aspect. False if that fails; the participant is removed then.
-bool GameControl::join(std::unique_ptr<Participant> participant) {
+/// Creates the agent's aspect, unless it is `ready`. False if that fails; the participant is removed then.
+bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* ready) {
   const int number = nextNumber_++;
   Participant& p = *participant;
   participants_.push_back(std::move(participant));
-  AgentAspect* aspect = nullptr;
+  AgentAspect* aspect = ready;
   try {
-    auto* server = kernel().root().find<ISceneServer>();
-    Node& scene = server ? server->scene() : require<Node>(ISceneServer::kDefaultScene);
-    aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
+    if (!ready) {
+      auto* server = kernel().root().find<ISceneServer>();
+      Node& scene = server ? server->scene() : require<Node>(ISceneServer::kDefaultScene);
+      aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
+      if (auto scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
+        scene->setFolder(robotFolder_);
+    }
     aspect->setNumber(number);
-    if (auto scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
-      scene->setFolder(robotFolder_);
-    p.join(number, *aspect);
+    if (requests_) RequestEffector::addTo(*aspect);
+    p.join(number, *aspect, ready != nullptr);
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
     if (p.connection()) p.connection()->close("no agent could be made for it");

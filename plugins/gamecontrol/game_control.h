@@ -24,6 +24,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
 
   const std::vector<AgentAspect*>& agents() const override;
   void removeAgent(AgentAspect& agent, bool close) override;
+  void disqualify(AgentAspect& agent, std::string_view why) override;
+  std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override;
   int agentsSeen() const override { return agentsSeen_; }
   const Predicates* percepts(const AgentAspect& agent) const override;
   double latency(const AgentAspect& agent) const override;
@@ -54,10 +56,12 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void takeTurn(const Event& event);
   void sense(const Event& event);
 
+  /// Lists the judges that are enabled.
+  void findJudges();
   void removeLeaving();
   void joinBehaviors();
   void joinNewcomers();
-  bool join(std::unique_ptr<Participant> participant);
+  bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
   void resolveParsers();
   void resolveRobots();
   void deliver();
@@ -84,6 +88,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
+  Links<IAgentJudge> judges_;
+  std::vector<IAgentJudge*> activeJudges_;  ///< of findJudges()
   std::optional<gamecontrol::AgentLog> log_;
   gamecontrol::LockstepGate lockstep_;
   /// Robots that untrusted clients may load in lockstep; capacity: 2 * maxAgents; refilled by robots per second.
@@ -91,7 +97,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
-  bool sync_ = false;
+  bool sync_ = false, requests_ = false;
   bool released_ = false;  ///< the hold is over
   double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30,
          answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;

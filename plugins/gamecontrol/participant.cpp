@@ -20,7 +20,8 @@ Participant::Participant(IConnection& connection)
 Participant::Participant(Behavior& behavior)
     : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
 
-void Participant::join(int number, AgentAspect& aspect) {
+void Participant::join(int number, AgentAspect& aspect, bool object) {
+  isObject_ = object;
   number_ = number;
   aspect_ = &aspect;
   joinedAt_ = Clock::now();
@@ -99,7 +100,7 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, std::int64_t cycle) {
+void Participant::execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJudge* const> judges) {
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
   if (actions_.takeSkip()) return;
@@ -110,6 +111,7 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
   NowRunning now("act");
   for (const Element action : actions_.pending()) {
     if (!action.isList()) continue;
+    if (leaving_) break;  // a judge disqualified it
     const std::string_view head = action.head();
     if (head.empty()) {
       warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
@@ -117,7 +119,7 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
     }
     if (Effector* effector = lookup.find(head)) {
       now.at(effector);
-      executeAction(*effector, action, log, cycle);
+      executeAction(*effector, action, log, cycle, judges);
     } else if (hasRobot_ || head != kSync) {
       warnUnknown(log, cycle, head);
     }
@@ -125,8 +127,12 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
   actions_.executed();
 }
 
-void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle) {
+void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
+                                std::span<IAgentJudge* const> judges) {
   try {
+    for (IAgentJudge* judge : judges)
+      if (const std::string why = judge->judgeAction(*aspect(), effector, action); !why.empty())
+        return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();
@@ -151,7 +157,9 @@ bool Participant::resolveRobot() {
     return false;
   }
   const std::size_t effectors = effectors_.rebuild(*root), perceptors = percepts_.rebuild(*root);
-  const bool first = !hasRobot_ && (perceptors > 0 || effectors > 1);  // it has the scene effector without a robot
+  // Without a robot it has the scene effector, unless it is an object of the scene.
+  const bool first = !hasRobot_ && (perceptors > 0 || effectors > (isObject_ ? 0 : 1));
+  blind_ = perceptors == 0;
   hasRobot_ |= first;
   return first;
 }
@@ -169,7 +177,8 @@ void Participant::encode() {
 }
 
 bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now) {
-  if (percepts().empty() || leaving()) return true;
+  if (leaving()) return true;
+  if (percepts().empty() && !(inside_ && blind_ && hasRobot_)) return true;
   if (inside_) {
     think(log, cycle);
     return true;

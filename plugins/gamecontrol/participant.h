@@ -19,6 +19,7 @@
 /// depend on the time between its connection and that message.
 
 #include <chrono>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -66,8 +67,9 @@ class Participant {
   /// The connection ended.
   void disconnect() { connection_ = nullptr; }
 
-  /// Assigns number and aspect. A behavior adds its first actions.
-  void join(int number, AgentAspect& aspect);
+  /// Assigns number and aspect. A behavior adds its first actions. `object`: the aspect was made for an object of the
+  /// scene, and the agent needs no robot.
+  void join(int number, AgentAspect& aspect, bool object = false);
   /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
   /// True while it has sent messages but its first percepts may be under way.
@@ -88,8 +90,8 @@ class Participant {
   const Predicates& pending() const { return actions_.pending(); }
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
-  /// Executes the pending actions.
-  void execute(AgentLog& log, std::int64_t cycle);
+  /// Executes the pending actions that no judge refuses.
+  void execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJudge* const> judges);
   /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
   /// mistake. False if the line was dropped because there were too many.
   bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
@@ -166,7 +168,8 @@ class Participant {
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
   bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
-  void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle);
+  void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
+                     std::span<IAgentJudge* const> judges);
   void think(AgentLog& log, std::int64_t cycle);
   /// The cycle count in the next sense phase.
   std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }
@@ -186,6 +189,8 @@ class Participant {
   Ref<IParser> parser_;
   const bool inside_;
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false;
+  bool isObject_ = false;  ///< its aspect was made for an object of the scene
+  bool blind_ = false;     ///< it has no perceptors: its behavior is called with empty percepts
   LockstepRecord lockstep_;
   ActionQueue actions_;
   EffectorTable effectors_;

@@ -1,10 +1,13 @@
 #include "spark/plugin.h"
 
 #include "gamecontrol/game_control.h"
+#include "gamecontrol/judges.h"
+#include "gamecontrol/request_effector.h"
 #include "gamecontrol/scene_effector.h"
 #include "gamecontrol/script_behavior.h"
 
 SPARK_PLUGIN("gamecontrol", "1.0",
              "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
              spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
-             spark::Behavior, spark::SceneEffector, spark::ScriptBehavior)
+             spark::Behavior, spark::SceneEffector, spark::RequestEffector,
+             spark::RequestPerceptor, spark::RequestAspect, spark::ActionLimitAspect, spark::ScriptBehavior)

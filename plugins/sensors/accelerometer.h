@@ -22,7 +22,7 @@ class Accelerometer : public Perceptor {
         .state()
         .doc("The body's velocity at the last sample, world frame.");
     d.property("acceleration", &Accelerometer::acceleration_).unit("m/s^2").state().doc("The last sample, body frame.");
-    d.link(&Accelerometer::body_, Above<Transform>().child<IRigidBody>());
+    d.link(&Accelerometer::body_, BodyAround());
     d.on<&Accelerometer::prepare>(phase::kPrepare);
   }
   void sense(Predicates& out, const Event&) override {

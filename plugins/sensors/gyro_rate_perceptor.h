@@ -14,7 +14,7 @@ class GyroRatePerceptor : public Perceptor {
     d.doc(
         "Senses the angular velocity of its transform's body, in the body's frame: (GYR (n name) (rt x y z)) in "
         "deg/s.");
-    d.link(&GyroRatePerceptor::body_, Above<Transform>().child<IRigidBody>());
+    d.link(&GyroRatePerceptor::body_, BodyAround());
   }
 
   void sense(Predicates& out, const Event&) override {

@@ -40,7 +40,7 @@ class RayPerceptor : public Perceptor, public ISharedView {
   void beginMeasuring() {
     if (tree_.changed(*this)) {
       auto* const aspect = ancestor<AgentAspect>();
-      agent_ = aspect ? &aspect->outermost() : nullptr;
+      agent_ = aspect ? &aspect->object() : nullptr;
     }
     ready_ = physics_ && physics_->hasWorld() && transform();
     if (ready_) pose_ = toPose(transform()->world());

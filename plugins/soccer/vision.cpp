@@ -46,6 +46,7 @@ void EyeContext::refresh(const SceneNode& eye) {
   stateFound_ = false;
   auto* aspect = eye.ancestor<AgentAspect>();
   agent_ = aspect ? &aspect->outermost() : nullptr;
+  object_ = aspect ? &aspect->object() : nullptr;
   state_ = nullptr;
   settings_ = kernel.root().find<SoccerSettings>();
   physics_ = kernel.root().find<IPhysicsServer>();

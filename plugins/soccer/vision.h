@@ -96,7 +96,7 @@ class EyeContext {
   bool occlusion() const { return occlusion_; }
   /// True if an object at `point`, with that body (nullptr: none), is hidden from `eye` (world frame [m]).
   bool isHidden(const Vec3f& eye, const Vec3f& point, const IRigidBody* body) const {
-    return hides_ && physics_->isHidden(eye.cast<double>(), point.cast<double>(), body, agent_);
+    return hides_ && physics_->isHidden(eye.cast<double>(), point.cast<double>(), body, object_);
   }
   /// True if something may be hidden in this sense phase.
   bool hides() const { return hides_; }
@@ -128,6 +128,7 @@ class EyeContext {
   std::unique_ptr<VisibleObjects> own_;  ///< without settings
   VisibleObjects* objects_ = nullptr;
   AgentAspect* agent_ = nullptr;
+  const Node* object_ = nullptr;  ///< AgentAspect::object() of the agent
   AgentState* state_ = nullptr;
   SoccerSettings* settings_ = nullptr;
   IPhysicsServer* physics_ = nullptr;

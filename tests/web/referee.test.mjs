@@ -70,6 +70,24 @@ test("the referee's link allows kick-off, setting the score and moving the ball"
   await shoot(page, "referee");
 });
 
+test("the referee switches offside off and on in a running match", async (t) => {
+  const host = await startHost(t, ...ruled);
+  const page = await openPage(t, `${host.url}?panel=referee#token=${token}`);
+  await until(page, "the referee", (s) => s.referee);
+  const offside = part(page, "rule-OffsideAspect");
+  await offside.waitFor();
+  assert.equal(await offside.isChecked(), true);
+  const enabled = async () => {
+    const { properties } = await page.evaluate(ask, { do: "get", path: "/sys/server/gamecontrol/OffsideAspect" });
+    return properties.find((p) => p.name === "enabled").value;
+  };
+  for (const on of [false, true]) {
+    await offside.setChecked(on);
+    await part(page, "referee-message").getByText(`Offside: ${on ? "on" : "off"}.`).waitFor();
+    assert.equal(await enabled(), on);
+  }
+});
+
 test("entering the token opens the console", async (t) => {
   const host = await startHost(t, ...ruled);
   const page = await openPage(t, `${host.url}?panel=referee`);

@@ -7,6 +7,7 @@ import { modeNames, numberOf, teamTitle } from "./format";
 import { icon } from "./icons";
 import { placeOf, type Point } from "./places";
 import { inOrder } from "./players_panel";
+import { RuleSwitches } from "./rule_switches";
 import * as trainer from "./trainer";
 
 export interface RefereeActions {
@@ -48,6 +49,7 @@ export class RefereePanel {
   private readonly score = { left: numberField("score-left-field", "Left"), right: numberField("score-right-field", "Right") };
   private readonly time = h("input", { class: "field number", type: "text", autocomplete: "off", "data-testid": "time-field", placeholder: "m:ss" });
   private readonly raw = h("input", { class: "field", type: "text", autocomplete: "off", spellcheck: "false", "data-testid": "command-field", "aria-label": "Trainer's command", placeholder: "(playMode PlayOn)" });
+  private readonly rules = new RuleSwitches((text, ok) => this.say(text, ok));
   private awaited: { what: string; done: () => boolean; until: number | null } | null = null;
   private shownModes = "";
   private shownPlayers = "";
@@ -71,6 +73,7 @@ export class RefereePanel {
       this.ballSection(),
       this.playerSection(),
       this.scoreSection(),
+      this.section("Rules", this.rules.element),
       this.rawSection(),
       h("div", { class: "stuck" }, this.message),
     );
@@ -93,6 +96,7 @@ export class RefereePanel {
     this.listModes();
     this.listPlayers();
     this.showScore();
+    this.rules.update(live!, performance.now());
   }
 
   kickOff(side: Side): void {

@@ -1,0 +1,165 @@
+#include "gamecontrol/request_effector.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "spark/error.h"
+
+namespace spark {
+
+namespace {
+
+using Kind = PartRequest::Kind;
+
+constexpr const char* kAnswers = "_RequestAnswers";
+constexpr const char* kUsage =
+    "expected (request (perceptor <class>) (name <name>) (at <node>)), or effector in its place, or (request (scene "
+    "<file>) (at <node>))";
+
+/// Writes a line as words, without what would end the list.
+void writeWords(Predicates& out, std::string_view line) {
+  std::string word;
+  const auto flush = [&] {
+    if (!word.empty()) out.add(std::string_view(word));
+    word.clear();
+  };
+  for (const char c : line)
+    if (c == ' ' || c == '(' || c == ')' || c == '"' || static_cast<unsigned char>(c) < 0x20)
+      flush();
+    else
+      word += c;
+  flush();
+}
+
+std::string_view textOf(const Element& action, std::string_view name) {
+  const Element e = action.named(name);
+  return e && e.at(1) && e.at(1).isText() ? e.at(1).text() : std::string_view();
+}
+
+/// The first node of that name below `node`, in tree order.
+Node* findBelow(Node& node, std::string_view name) {
+  for (const auto& child : node.children())
+    if (Node* below = child->asNode()) {
+      if (below->name() == name) return below;
+      if (Node* found = findBelow(*below, name)) return found;
+    }
+  return nullptr;
+}
+
+bool isBelow(const Leaf& node, const Node& above) {
+  for (const Leaf* up = &node; up; up = up->parent())
+    if (up == &above) return true;
+  return false;
+}
+
+}  // namespace
+
+void RequestPerceptor::sense(Predicates& out, const Event&) {
+  for (const auto& [name, why] : answers_) {
+    out.open(why.empty() ? "granted" : "refused").pair("name", std::string_view(name));
+    if (!why.empty()) {
+      out.open("why");
+      writeWords(out, why);
+      out.close();
+    }
+    out.close();
+  }
+  answers_.clear();
+}
+
+void RequestEffector::describe(Description<RequestEffector>& d) {
+  using R = RequestEffector;
+  d.doc("(request (perceptor <class>) (name <name>) (at <node>)): gives the agent a perceptor or an effector.");
+  d.property("maxParts", &R::maxParts_).range(0, 1000).doc("Number of requests that are granted; further ones are not.");
+  d.property("folder", &R::folder_).doc("Scene files that are asked for are below this folder.");
+  d.on<&R::prepare>(phase::kPrepare);
+}
+
+void RequestEffector::addTo(AgentAspect& aspect) {
+  aspect.create("RequestEffector", "_Request");
+  aspect.create("RequestPerceptor", kAnswers);
+}
+
+std::string RequestEffector::act(const Element& action) {
+  if (pending_.size() >= kMaxPending)
+    return fmt::format("expected at most {} requests in a cycle, found more: this one is lost.", kMaxPending);
+  for (const auto& [word, kind] :
+       {std::pair("perceptor", Kind::perceptor), {"effector", Kind::effector}, {"scene", Kind::scene}}) {
+    if (!action.named(word)) continue;
+    Request request{kind, std::string(textOf(action, word)), std::string(textOf(action, "name")),
+                    std::string(textOf(action, "at"))};
+    if (request.type.empty() || (kind != Kind::scene && request.name.empty())) return kUsage;
+    if (std::max({request.type.size(), request.name.size(), request.at.size()}) > kMaxText)
+      return fmt::format("expected texts of at most {} bytes, found a longer one.", kMaxText);
+    pending_.push_back(std::move(request));
+    return {};
+  }
+  return kUsage;
+}
+
+void RequestEffector::prepare(const Event&) {
+  if (pending_.empty()) return;
+  AgentAspect* const nearest = agent();
+  const std::vector<Request> requests = std::exchange(pending_, {});
+  if (!nearest) return;
+  AgentAspect& root = nearest->outermost();
+  auto* const answers = find<RequestPerceptor>(fmt::format("../{}", kAnswers));
+  for (const Request& request : requests) {
+    std::string why;
+    try {
+      why = grant(request, root);
+    } catch (const std::exception& e) {
+      why = e.what();
+    }
+    if (why.empty()) ++parts_;
+    if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
+  }
+}
+
+Node* RequestEffector::parentFor(const Request& request, AgentAspect& root) const {
+  if (request.at.empty()) return &root;
+  Node* const found = request.at.find('/') == std::string::npos ? findBelow(root, request.at)
+                                                                : root.find<Node>(request.at);
+  return found && isBelow(*found, root) ? found : nullptr;
+}
+
+std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
+  // What it is, and where it goes.
+  if (parts_ >= maxParts_) return fmt::format("{} requests were granted, no more are", maxParts_);
+  Node* const parent = parentFor(request, root);
+  if (!parent) return fmt::format("there is no node {} in this robot", request.at);
+  if (request.kind == Kind::scene) {
+    if (!request.type.starts_with(folder_) || request.type.find("..") != std::string::npos)
+      return fmt::format("expected a file below {}, found {}", folder_, request.type);
+  } else {
+    const char* const base = request.kind == Kind::perceptor ? "Perceptor" : "Effector";
+    ClassObject* const type = kernel().findClass(request.type);
+    if (!type || type->isAbstract() || !type->isA(base))
+      return fmt::format("expected the class of {} {}, found {}",
+                         request.kind == Kind::perceptor ? "a perceptor," : "an effector,",
+                         request.kind == Kind::perceptor ? "such as GPS" : "such as HingeEffector", request.type);
+    if (parent->find(request.name)) return fmt::format("there is a node {} already", request.name);
+  }
+
+  // The judges, then the tree.
+  auto* const control = find<IGameControl>(IGameControl::kPath);
+  if (control)
+    if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent}); !why.empty())
+      return why;
+  if (request.kind == Kind::scene) {
+    const std::size_t before = parent->children().size();
+    try {
+      kernel().root().require<ISceneServer>().importScene(request.type, *parent, {});
+    } catch (...) {
+      while (parent->children().size() > before) parent->remove(*parent->children().back());
+      throw;
+    }
+  } else {
+    parent->create(request.type, request.name);
+  }
+  if (auto* const scenes = kernel().root().find<ISceneServer>()) scenes->markModified();
+  return {};
+}
+
+}  // namespace spark

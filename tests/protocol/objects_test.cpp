@@ -1,0 +1,79 @@
+// Objects that become agents, and objects again.
+#include "stadium.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Pushes what it drives along x, and counts its percepts and those with its place.
+class Pusher : public Behavior {
+  SPARK_CLASS(Pusher, Behavior)
+ public:
+  static void describe(Description<Pusher>& d) { d.doc("Pushes along x."); }
+  void start(Predicates&) override {}
+  void think(const Predicates& percepts, Predicates& actions) override {
+    ++thoughts;
+    for (const Element e : percepts)
+      if (e.head() == "GPS") ++places;
+    actions.open("force").add(0.2).add(0.0).add(0.0).close();
+  }
+  int thoughts = 0, places = 0;
+};
+
+}  // namespace
+
+TEST_CASE("A ball becomes an agent, plays, and becomes a ball again") {
+  Stadium s;
+  s.join("A", 1);
+  s.trainer("(playMode PlayOn)" + Stadium::ballTo(0, 0));
+  s.run(10);
+  const auto agents = [&] { return s.get("/sys/server/gamecontrol", "agentCount").toInteger(); };
+  const double still = s.ball().x();
+  REQUIRE(agents() == 1);
+
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Pusher>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  aspect.create("GPS", "gps");
+  aspect.create("ForceEffector", "legs");
+  auto& mind = aspect.create<Pusher>("Pusher", "mind");
+  s.run(50);
+  CHECK(agents() == 2);
+  CHECK(getProperty(aspect, "number").toInteger() == 2);
+  CHECK(mind.thoughts > 40);
+  CHECK(mind.places >= mind.thoughts - 3);
+  CHECK(s.ball().x() > still + 0.5);
+
+  ball.remove(aspect);
+  s.run(2);
+  CHECK(agents() == 1);
+  s.trainer(Stadium::ballTo(0, 0));
+  s.run(20);
+  CHECK(std::abs(s.ball().x()) < 0.01);
+  // It may become an agent again.
+  Node& second = ball.create<Node>("AgentAspect", "agent");
+  second.create("ForceEffector", "legs");
+  auto& again = second.create<Pusher>("Pusher", "mind");
+  s.run(50);
+  CHECK(agents() == 2);
+  CHECK(again.thoughts > 40);
+  CHECK(s.ball().x() > 0.5);
+}
+
+TEST_CASE("An object whose mind is taken away is no agent, and keeps what it is made of") {
+  Stadium s;
+  s.join("A", 1);
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Pusher>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  aspect.create("Pusher", "mind");
+  s.run(3);
+  const auto agents = [&] { return s.get("/sys/server/gamecontrol", "agentCount").toInteger(); };
+  REQUIRE(agents() == 2);
+  aspect.remove(*aspect.find("mind"));
+  s.run(2);
+  CHECK(agents() == 1);
+  CHECK(ball.find("agent") == nullptr);
+  CHECK(ball.find("physics") != nullptr);
+}

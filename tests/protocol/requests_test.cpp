@@ -1,0 +1,116 @@
+// Agents that ask for perceptors and effectors while they run, and rules that refuse.
+#include "stadium.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// A match in which agents may ask, with one player.
+struct AskingMatch : Stadium {
+  explicit AskingMatch(bool requests = true)
+      : Stadium({{"/sys/server/gamecontrol.requests", requests}}), player(join("A", 1)) {
+    trainer("(playMode PlayOn)");
+    run(20);
+  }
+  Leaf& addRule(const char* type) { return node("/sys/server/gamecontrol").asNode()->create(type, "rule"); }
+  /// The player's messages from the cycles after it has sent the actions.
+  std::string after(const std::string& actions, int cycles = 4) {
+    player.all.clear();
+    act(player, actions);
+    run(cycles);
+    std::string out;
+    for (const std::string& m : player.all) out += m + "\n";
+    return out;
+  }
+  Player& player;
+};
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("An agent asks for a sensor in the middle of a match and gets it") {
+  AskingMatch m;
+  CHECK_FALSE(has(m.after("(syn)"), "(GPS "));
+  const std::string heard = m.after("(request (perceptor GPS)(name gps2))");
+  INFO(heard);
+  CHECK(has(heard, "(granted (name gps2))"));
+  CHECK(has(heard, "(GPS (n gps2) (tf "));
+  CHECK_FALSE(has(m.after("(syn)"), "(granted"));  // it is told once
+  // Below a part of its robot, by name.
+  CHECK(has(m.after("(request (perceptor GPS)(name inside)(at body))"), "(GPS (n inside) (tf "));
+}
+
+TEST_CASE("An agent asks for an effector and uses it") {
+  AskingMatch m;
+  CHECK(has(m.after("(request (effector SayEffector)(name mouth))"), "(granted (name mouth))"));
+}
+
+TEST_CASE("Requests that cannot be granted are answered with what was expected") {
+  AskingMatch m;
+  const auto why = [&](const std::string& request) {
+    const std::string heard = m.after(request);
+    const std::size_t at = heard.find("(why ");
+    return at == std::string::npos ? heard : heard.substr(at, heard.find("))", at) - at);
+  };
+  CHECK(has(why("(request (perceptor Gps)(name g))"), "(why expected the class of a perceptor, such as GPS, found Gps"));
+  CHECK(has(why("(request (perceptor RigidBody)(name g))"), "found RigidBody"));
+  CHECK(has(why("(request (effector GPS)(name g))"), "(why expected the class of an effector"));
+  CHECK(has(why("(request (perceptor Perceptor)(name g))"), "found Perceptor"));
+  CHECK(has(why("(request (perceptor GPS)(name g)(at nowhere))"), "there is no node nowhere in this robot"));
+  CHECK(has(why("(request (perceptor GPS)(name g)(at ../../../sys/server))"), "there is no node"));
+  CHECK(has(why("(request (perceptor GPS)(name a/b))"), "(why "));
+  CHECK(has(why("(request (scene rsg/soccer/field.rsg))"), "expected a file below rsg/agent/, found rsg/soccer/field.rsg"));
+  CHECK(has(why("(request (scene rsg/agent/../soccer/field.rsg))"), "expected a file below"));
+  CHECK(has(why("(request (scene rsg/agent/nothing.rsg))"), "(why "));
+  m.after("(request (perceptor GPS)(name g))");
+  CHECK(has(why("(request (perceptor GPS)(name g))"), "there is a node g already"));
+  // Malformed ones are mistakes, which the log has.
+  for (const char* wrong : {"(request)", "(request (perceptor))", "(request (perceptor GPS))", "(request perceptor GPS)",
+                            "(request (perceptor (GPS))(name x))"})
+    CHECK_FALSE(has(m.after(wrong), "granted"));
+  // No more than its share.
+  std::string last;
+  for (int i = 0; i < 40; ++i) last = m.after("(request (perceptor GPS)(name more" + std::to_string(i) + "))", 2);
+  CHECK(has(m.after("(request (perceptor GPS)(name last))"), "32 requests were granted, no more are"));
+}
+
+TEST_CASE("A rule refuses an agent's request the first time and disqualifies the agent the second time") {
+  AskingMatch m;
+  Leaf& rule = m.addRule("RequestAspect");
+  setProperty(rule, "allowed", Value(List{"GyroRatePerceptor"}));
+  setProperty(rule, "tolerance", 1);
+  const std::string first = m.after("(request (perceptor GPS)(name gps2))");
+  INFO(first);
+  CHECK(has(first, "(refused (name gps2) (why the rules do not allow GPS))"));
+  CHECK_FALSE(has(first, "(GPS "));
+  CHECK_FALSE(m.player.client.ended());
+  m.after("(request (perceptor GPS)(name gps2))");
+  CHECK(m.player.client.ended());
+}
+
+TEST_CASE("A rule that is disabled refuses nothing") {
+  AskingMatch m;
+  Leaf& rule = m.addRule("RequestAspect");
+  setProperty(rule, "enabled", false);
+  CHECK(has(m.after("(request (perceptor GPS)(name gps2))"), "(granted (name gps2))"));
+}
+
+TEST_CASE("An agent may use an effector as often in a cycle as a rule allows") {
+  AskingMatch m;
+  const auto angle = [&] { return m.get("/sys/server/gamecontrol", "agentCount").toInteger(); };
+  CHECK(angle() == 1);
+  Leaf& rule = m.addRule("ActionLimitAspect");
+  setProperty(rule, "predicate", "request");
+  m.after("(request (perceptor GPS)(name a))(request (perceptor GPS)(name b))");
+  const std::string heard = m.after("(syn)");
+  CHECK(has(heard, "(GPS (n a) "));
+  CHECK_FALSE(has(heard, "(GPS (n b) "));
+  CHECK(has(m.after("(request (perceptor GPS)(name b))"), "(granted (name b))"));  // in another cycle
+}
+
+TEST_CASE("Without the property an agent cannot ask") {
+  AskingMatch m(false);
+  CHECK_FALSE(has(m.after("(request (perceptor GPS)(name gps2))"), "granted"));
+}

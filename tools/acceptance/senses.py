@@ -1,0 +1,39 @@
+"""The milestone `senses`: rays, occlusion, distance sensors."""
+import json
+
+from acceptance.common import BIN, PASS, FAIL, OPEN, run, say, tests
+
+RAYS_MICROS = 1000  # of 22 x 64 rays, with what prepares for them
+
+
+def micro(name):
+    """The least CPU time of some runs of a micro-benchmark [us], and its counters."""
+    say(f"Measuring: sparkbench --micro, {name}")
+    runs = []
+    for _ in range(3):
+        output = run([BIN / "sparkbench", "--micro", "--json"]).stdout
+        runs += [b for b in json.loads(output[output.index("{"):])["benchmarks"] if b["name"].split("/process_time")[0] == name]
+    return min(runs, key=lambda b: b["cpu_time"])
+
+
+def rays():
+    found = micro("rays/22x64")
+    return f"{found['cpu_time']:.0f} us for {found['rays']:.0f} rays, {found['met']:.0f} of which meet something", PASS if found["cpu_time"] <= RAYS_MICROS else FAIL
+
+
+def occlusion():
+    done = run([BIN.parent / "tests/test-physics-parts", "what rays call hidden*", "--warn", "NoTests"])
+    words = [line.strip() for line in done.stdout.splitlines() if "points are hidden" in line]
+    seen, good = tests("scenario-senses", "soccer")
+    return f"{'; '.join(words)}; {seen}", FAIL if done.returncode or not words else good
+
+
+def distances():
+    return tests("sensors")
+
+
+POINTS = {
+    "1": ("22 x 64 rays within 1 ms", rays),
+    "2": ("occlusion as a search without rays finds it, in 10,000 random scenes", occlusion),
+    "3": ("distance sensors meet the geometry of the scene", distances),
+}
