@@ -242,7 +242,7 @@ void GameControl::takeTurn(const Event& event) {
     for (const auto& p : participants_) p->promote();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
-    participants_[i]->execute(agentLog(), cycle_);
+    participants_[i]->execute(agentLog(), event);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }

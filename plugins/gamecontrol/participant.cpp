@@ -99,7 +99,8 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, std::int64_t cycle) {
+void Participant::execute(AgentLog& log, const Event& event) {
+  const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
   if (actions_.takeSkip()) return;
@@ -115,7 +116,10 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
       warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
       continue;
     }
-    if (Effector* effector = lookup.find(head)) {
+    const auto [effector, modified] = lookup.find(head);
+    if (modified && effector) {
+      modified->actions.append(action);
+    } else if (effector) {
       now.at(effector);
       executeAction(*effector, action, log, cycle);
     } else if (hasRobot_ || head != kSync) {
@@ -123,6 +127,29 @@ void Participant::execute(AgentLog& log, std::int64_t cycle) {
     }
   }
   actions_.executed();
+  executeModified(log, event);
+}
+
+/// Effectors with modifiers act after all others. Also without an action: an earlier one may be due now.
+void Participant::executeModified(AgentLog& log, const Event& event) {
+  for (const auto& m : effectors_.modified()) {
+    NowRunning now("act");
+    if (const Effector* effector = m->effector.get()) try {
+        m->modifiers->apply({Signal::Kind::action, m->actions, 0}, event, now);
+      } catch (const std::exception& fault) {
+        effector->kernel().countFault();
+        warn(log, event.cycle,
+             fmt::format("{} ({}): {}", effector->path(), effector->classObject()->name(), fault.what()));
+        m->actions.clear();
+      }
+    for (const Element action : m->actions) {
+      Effector* const effector = m->effector.get();
+      if (!effector) break;
+      now.at(effector);
+      executeAction(*effector, action, log, event.cycle);
+    }
+    m->actions.clear();
+  }
 }
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle) {

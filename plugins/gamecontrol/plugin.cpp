@@ -1,5 +1,6 @@
 #include "spark/plugin.h"
 
+#include "api/modifier.h"
 #include "gamecontrol/game_control.h"
 #include "gamecontrol/scene_effector.h"
 #include "gamecontrol/script_behavior.h"
@@ -7,4 +8,4 @@
 SPARK_PLUGIN("gamecontrol", "1.0",
              "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
              spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
-             spark::Behavior, spark::SceneEffector, spark::ScriptBehavior)
+             spark::Behavior, spark::Modifier, spark::NumberModifier, spark::SceneEffector, spark::ScriptBehavior)
