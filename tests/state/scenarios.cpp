@@ -201,6 +201,23 @@ void inputPieces(World& w, int cycle) {
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 
+// ---- robots with imperfect sensors and effectors ----
+
+void makeImperfect(World& w) {
+  w.configureByText(R"lua(
+    include "house.lua"
+    files() scene() physics() simulation() agents{}
+    for _, name in ipairs { "sensors", "effectors", "modifiers" } do plugin(name) end
+    get("/usr/scene/world").gravity = { 0, 0, 0 }
+  )lua");
+  for (int n = 1; n <= 2; ++n) w.join("A", n, "rsg/agent/imperfect.rsg");
+}
+
+void inputImperfect(World& w, int cycle) {
+  w.player(0).next = fmt::format("(force {} 0 1)", cycle % 20 - 10);
+  if (cycle % 3 == 0) w.player(1).next = fmt::format("(force 0 {} 1)", cycle % 7 - 3);
+}
+
 // ---- the replay of a recorded match ----
 
 /// The log of a short match, recorded when it is first needed.
@@ -227,7 +244,8 @@ const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all{
       {"fouls", makeFouls, inputFouls, 900},       {"robots", makeRobots, inputRobots, 150},
       {"spheres", makeSpheres, inputSpheres, 200}, {"spl", makeSpl, inputSpl, 100},
-      {"pieces", makePieces, inputPieces, 150},    {"replay", makeReplay, inputReplay, 100},
+      {"pieces", makePieces, inputPieces, 150},    {"imperfect", makeImperfect, inputImperfect, 150},
+      {"replay", makeReplay, inputReplay, 100},
   };
   return all;
 }
