@@ -21,10 +21,15 @@ void ModifierChain::apply(Signal signal, const Event& event, NowRunning& now) co
     Modifier* const m = ref.get();
     if (!m) continue;  // removed since the chain was made
     now.at(m);
+    const auto fail = [m](const char* what) {
+      throw Error(fmt::format("its modifier {} ({}) threw: {}", m->name(), m->classObject()->name(), what));
+    };
     try {
       m->apply(signal, event);
     } catch (const std::exception& fault) {
-      throw Error(fmt::format("its modifier {} ({}) threw: {}", m->name(), m->classObject()->name(), fault.what()));
+      fail(fault.what());
+    } catch (...) {
+      fail("something that is no std::exception");
     }
   }
 }

@@ -7,11 +7,10 @@
 
 namespace spark {
 
-/// The play of a gear: the output follows the input only when the input has moved through the gap.
+/// The play of a gear. The output is within half a width of the input, and moves only as far as the input pushes it:
 ///
-///     input            ┌──────┐
-///     ─────────────────┤      ├────   the output is anywhere in [input - width / 2, input + width / 2]
-///     output               │          and moves only when the input pushes it
+///     input    0 ─► 2 ─► 1 ─► 0 ─► -1      of a gap 2 wide, at first in its middle
+///     output   0    1    1    1     0
 class Backlash : public NumberModifier {
   SPARK_CLASS(Backlash, NumberModifier)
  public:

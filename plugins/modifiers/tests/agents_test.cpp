@@ -124,6 +124,15 @@ TEST_CASE("A percept is exactly so many cycles late, whatever the interval of it
   }
 }
 
+TEST_CASE("With agentStep the cycles of a delay are turns of the agent") {
+  Lab lab("(nd CycleSensor (setName s) (nd Delay (setCycles 2)))");
+  setProperty(lab.kernel.root().require<Leaf>("/sys/server/gamecontrol"), "agentStep", 0.06);
+  lab.run(9);  // turns in cycles 4, 7, 10
+  CHECK(lab.sensed() == "(C (n s) (v 4.00 4.00))");
+  CHECK(lab.sense() == "(C (n s) (v 7.00 7.00))");
+  CHECK(lab.sense() == "(C (n s) (v 7.00 7.00))");
+}
+
 TEST_CASE("An action has the dead time of its effector, to the cycle") {
   Lab lab(robot("(nd Recorder (setName motor) (nd Delay (setCycles 2))) (nd Recorder (setName exact))"));
   CHECK(lab.act("(motor 1.5)(motor 2)(exact 1)") == "");
