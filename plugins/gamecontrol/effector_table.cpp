@@ -21,13 +21,19 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
     else
       ++i;
 
-  for (const Entry& e : entries_)
+  for (Entry& e : entries_) {
     if (e.effector->as<ISyncEffector>()) syncPredicate_ = e.predicate;
+    auto modifiers = ModifierChain::of(*e.effector);
+    if (!modifiers) continue;
+    modified_.push_back(std::make_unique<Modified>(Modified{e.effector, std::move(modifiers), {}}));
+    e.modified = modified_.back().get();
+  }
   return effectors.size();
 }
 
 void EffectorTable::clear() {
   entries_.clear();
+  modified_.clear();
   syncPredicate_.clear();
 }
 

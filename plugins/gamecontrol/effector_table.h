@@ -3,24 +3,32 @@
 /// The effectors of one agent by predicate.
 
 #include <cstddef>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "api/agents.h"
+#include "gamecontrol/modifier_chain.h"
 
 namespace spark::gamecontrol {
 
 /// Finds the effector for an action. Agents usually send the same actions in the same order, so each entry remembers
 /// which entry was used after it: a lookup first tries that one.
 class EffectorTable {
-  struct Entry {
-    std::string predicate;
+ public:
+  /// An effector with modifiers, and its actions of this cycle.
+  struct Modified {
     Ref<Effector> effector;
-    std::size_t next = 0;  ///< index of the entry that was used after this one the last time
+    std::unique_ptr<ModifierChain> modifiers;
+    Predicates actions;
+  };
+  /// Where an action goes.
+  struct Target {
+    Effector* effector = nullptr;  ///< nullptr: there is none, or it was removed
+    Modified* modified = nullptr;  ///< nullptr: the effector has no modifiers
   };
 
- public:
   /// Rebuilds the table from the effectors below `root`. If several have the same predicate the last in tree order
   /// counts. Returns the number of effectors.
   std::size_t rebuild(AgentAspect& root);
@@ -30,6 +38,8 @@ class EffectorTable {
   const std::string& syncPredicate() const { return syncPredicate_; }
   /// All predicates, sorted.
   std::vector<std::string> predicates() const;
+  /// The effectors with modifiers, in order of their predicates.
+  const std::vector<std::unique_ptr<Modified>>& modified() const { return modified_; }
   /// True while a SceneEffector waits to load the robot, or has loaded it in the last prepare phase after a wait.
   bool loading() const;
 
@@ -37,17 +47,17 @@ class EffectorTable {
   class Lookup {
    public:
     explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_) {}
-    /// The effector for `predicate`; nullptr if there is none or it was removed.
-    Effector* find(std::string_view predicate) {
+    /// The effector for `predicate`.
+    Target find(std::string_view predicate) {
       auto& entries = table_.entries_;
       if (*guess_ >= entries.size() || entries[*guess_].predicate != predicate) {
         const std::size_t index = table_.indexOf(predicate);
-        if (index == entries.size()) return nullptr;
+        if (index == entries.size()) return {};
         *guess_ = index;
       }
       Entry& entry = entries[*guess_];
       guess_ = &entry.next;
-      return entry.effector.get();
+      return {entry.effector.get(), entry.modified};
     }
 
    private:
@@ -56,11 +66,18 @@ class EffectorTable {
   };
 
  private:
+  struct Entry {
+    std::string predicate;
+    Ref<Effector> effector;
+    std::size_t next = 0;          ///< index of the entry that was used after this one the last time
+    Modified* modified = nullptr;  ///< of modified_
+  };
   /// Binary search; the number of entries if there is none.
   std::size_t indexOf(std::string_view predicate) const;
 
   std::vector<Entry> entries_;  ///< sorted by predicate
-  std::size_t first_ = 0;       ///< index of the entry that was used first the last time
+  std::vector<std::unique_ptr<Modified>> modified_;
+  std::size_t first_ = 0;  ///< index of the entry that was used first the last time
   std::string syncPredicate_;
 };
 

@@ -272,7 +272,7 @@ void GameControl::takeTurn(const Event& event) {
   findJudges();
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
-    participants_[i]->execute(agentLog(), cycle_, activeJudges_);
+    participants_[i]->execute(agentLog(), event, activeJudges_);
     if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }

@@ -100,7 +100,8 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJudge* const> judges) {
+void Participant::execute(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+  const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
   if (actions_.takeSkip()) return;
@@ -117,7 +118,10 @@ void Participant::execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJud
       warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
       continue;
     }
-    if (Effector* effector = lookup.find(head)) {
+    const auto [effector, modified] = lookup.find(head);
+    if (modified && effector) {
+      modified->actions.append(action);
+    } else if (effector) {
       now.at(effector);
       executeAction(*effector, action, log, cycle, judges);
     } else if (hasRobot_ || head != kSync) {
@@ -125,13 +129,37 @@ void Participant::execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJud
     }
   }
   actions_.executed();
+  executeModified(log, event, judges);
+}
+
+/// Effectors with modifiers act after all others. Also without an action: an earlier one may be due now.
+void Participant::executeModified(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+  for (const auto& m : effectors_.modified()) {
+    NowRunning now("act");
+    if (const Effector* effector = m->effector.get()) try {
+        m->modifiers->apply({Signal::Kind::action, m->actions, 0}, event, now);
+      } catch (const std::exception& fault) {
+        effector->kernel().countFault();
+        warn(log, event.cycle,
+             fmt::format("{} ({}): {}", effector->path(), effector->classObject()->name(), fault.what()));
+        m->actions.clear();
+      }
+    for (const Element action : m->actions) {
+      Effector* const effector = m->effector.get();
+      if (!effector || leaving_) break;
+      now.at(effector);
+      executeAction(*effector, action, log, event.cycle, judges);
+    }
+    m->actions.clear();
+  }
 }
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
                                 std::span<IAgentJudge* const> judges) {
   try {
+    AgentAspect* const agent = aspect();
     for (IAgentJudge* judge : judges)
-      if (const std::string why = judge->judgeAction(*aspect(), effector, action); !why.empty())
+      if (const std::string why = agent ? judge->judgeAction(*agent, effector, action) : std::string(); !why.empty())
         return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {

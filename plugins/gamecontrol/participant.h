@@ -5,6 +5,8 @@
 ///     message ─► parser ─► ActionQueue ─ act phase ──► EffectorTable ─► effectors
 ///     message ◄─ parser ◄───────────── PerceptBuffer ◄─ sense phase ──── perceptors
 ///
+/// Where a perceptor or an effector has modifiers, they are applied in between.
+///
 /// Its latency is that of SimSpark, which recorded matches depend on:
 ///
 ///     cycle k      connected: its aspect is created, its cycle count is 1
@@ -90,8 +92,8 @@ class Participant {
   const Predicates& pending() const { return actions_.pending(); }
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
-  /// Executes the pending actions that no judge refuses.
-  void execute(AgentLog& log, std::int64_t cycle, std::span<IAgentJudge* const> judges);
+  /// Executes the pending actions that no judge refuses. `event`: of the act phase.
+  void execute(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges);
   /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
   /// mistake. False if the line was dropped because there were too many.
   bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
@@ -168,6 +170,7 @@ class Participant {
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
   bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
+  void executeModified(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges);
   void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
                      std::span<IAgentJudge* const> judges);
   void think(AgentLog& log, std::int64_t cycle);

@@ -12,24 +12,26 @@ std::size_t PerceptBuffer::rebuild(AgentAspect& root) {
   shared_.clear();
   std::vector<Perceptor*> perceptors;
   root.collect(perceptors);
-  perceptors_.assign(perceptors.begin(), perceptors.end());
-  for (Perceptor* p : perceptors)
+  sensors_.clear();
+  for (Perceptor* p : perceptors) {
+    sensors_.push_back({p, ModifierChain::of(*p)});
     if (auto view = p->as<ISharedView>()) shared_.push_back({p, view, p});
+  }
   dropRemoved();
-  return perceptors_.size();
+  return sensors_.size();
 }
 
 void PerceptBuffer::clear() {
-  perceptors_.clear();
+  sensors_.clear();
   shared_.clear();
   called_.clear();
 }
 
 void PerceptBuffer::dropRemoved() {
-  std::erase_if(perceptors_, [](const Ref<Perceptor>& p) { return !p; });
+  std::erase_if(sensors_, [](const Sensor& s) { return !s.perceptor; });
   std::erase_if(shared_, [](const Shared& s) { return !s.perceptor; });
   called_.clear();
-  for (const Ref<Perceptor>& p : perceptors_) called_.push_back(p.get());
+  for (const Sensor& s : sensors_) called_.push_back({s.perceptor.get(), s.modifiers.get()});
 }
 
 void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
@@ -43,31 +45,39 @@ bool PerceptBuffer::sense(const Event& event, std::int64_t cycle) {
   percepts_.clear();
   NowRunning now("sense");
   for (std::size_t i = 0; i < called_.size(); ++i) {
-    Perceptor* p = called_[i];
-    if (!isDue(*p, cycle)) continue;
-    const std::uint32_t before = percepts_.size();
-    now.at(p);
-    // No exception may leave a worker thread: it would end the process.
-    try {
-      p->sense(percepts_, event);
-    } catch (const std::exception& fault) {
-      percepts_.truncate(before);
-      faulty_ = i;
-      fault_ = fault.what();
-    } catch (...) {
-      percepts_.truncate(before);
-      faulty_ = i;
-      fault_ = "something that is no std::exception";
+    const Called& c = called_[i];
+    const std::uint32_t first = percepts_.size();
+    if (isDue(*c.perceptor, cycle)) {
+      now.at(c.perceptor);
+      guard(i, first, [&] { c.perceptor->sense(percepts_, event); });
     }
-    if (percepts_.isUnbalanced()) [[unlikely]]
-      closeLists(i);
+    if (c.modifiers)
+      guard(i, first, [&] { c.modifiers->apply({Signal::Kind::percept, percepts_, first}, event, now); });
   }
   return faulty_ == kNone && unbalanced_ == kNone;
 }
 
+/// No exception may leave a worker thread: it would end the process.
+template <class F>
+void PerceptBuffer::guard(std::size_t perceptor, std::uint32_t first, F run) {
+  try {
+    run();
+  } catch (const std::exception& fault) {
+    percepts_.truncate(first);
+    faulty_ = perceptor;
+    fault_ = fault.what();
+  } catch (...) {
+    percepts_.truncate(first);
+    faulty_ = perceptor;
+    fault_ = "something that is no std::exception";
+  }
+  if (percepts_.isUnbalanced()) [[unlikely]]
+    closeLists(perceptor);
+}
+
 void PerceptBuffer::closeLists(std::size_t perceptor) {
   const int open = percepts_.balance();
-  const std::uint64_t id = called_[perceptor]->id();
+  const std::uint64_t id = called_[perceptor].perceptor->id();
   if (unbalanced_ != kNone || std::find(reported_.begin(), reported_.end(), id) != reported_.end()) return;
   reported_.push_back(id);
   unbalanced_ = perceptor;
@@ -75,7 +85,7 @@ void PerceptBuffer::closeLists(std::size_t perceptor) {
 }
 
 void PerceptBuffer::reportFaults(std::string_view label, AgentLog& log) {
-  if (const Perceptor* p = unbalanced_ != kNone ? perceptors_[unbalanced_].get() : nullptr)
+  if (const Perceptor* p = unbalanced_ != kNone ? sensors_[unbalanced_].perceptor.get() : nullptr)
     log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. "
                                         "Each open() needs one close(). This is reported once.",
                                         label, p->path(), p->classObject()->name(),
@@ -84,12 +94,12 @@ void PerceptBuffer::reportFaults(std::string_view label, AgentLog& log) {
   unbalanced_ = kNone;
 
   if (faulty_ == kNone) return;
-  if (const Perceptor* p = perceptors_[faulty_].get()) {
+  if (const Perceptor* p = sensors_[faulty_].perceptor.get()) {
     p->kernel().countFault();
     log.write(Level::error, fmt::format("{}: {} ({}) threw and is asked no more: {}", label, p->path(),
                                         p->classObject()->name(), fault_));
   }
-  perceptors_.erase(perceptors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
+  sensors_.erase(sensors_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   called_.erase(called_.begin() + static_cast<std::ptrdiff_t>(faulty_));
   faulty_ = kNone;
 }

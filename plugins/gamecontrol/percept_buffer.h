@@ -11,11 +11,13 @@
 
 #include "api/agents.h"
 #include "gamecontrol/agent_log.h"
+#include "gamecontrol/modifier_chain.h"
 
 namespace spark::gamecontrol {
 
-/// Calls the perceptors that are due and keeps their percepts. A perceptor that throws is not called again; one that
-/// leaves lists open is reported, and the lists are closed so that they do not swallow other percepts.
+/// Calls the perceptors that are due, applies their modifiers and keeps the percepts. A perceptor that throws is not
+/// called again; one that leaves lists open is reported, and the lists are closed so that they do not swallow other
+/// percepts.
 class PerceptBuffer {
  public:
   /// Collects the perceptors below `root`. Returns their number.
@@ -42,18 +44,31 @@ class PerceptBuffer {
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
 
+  struct Sensor {
+    Ref<Perceptor> perceptor;
+    std::unique_ptr<ModifierChain> modifiers;  ///< nullptr: none
+  };
+  /// A sensor as pointers, valid until the tree changes: a Ref costs a cache line.
+  struct Called {
+    Perceptor* perceptor;
+    const ModifierChain* modifiers;
+  };
   struct Shared {
     Ref<Perceptor> perceptor;
     ISharedView* view;
     const Perceptor* called;  ///< as in `called_`
   };
   static bool isDue(const Perceptor& p, std::int64_t cycle) { return cycle % std::max(1, p.interval()) == 0; }
+  /// Calls `run`, which adds percepts from token `first` on. If it throws, these are removed and the perceptor with
+  /// that index is noted.
+  template <class F>
+  void guard(std::size_t perceptor, std::uint32_t first, F run);
   void closeLists(std::size_t perceptor);
 
   Predicates percepts_;
-  std::vector<Ref<Perceptor>> perceptors_;  ///< in tree order
-  std::vector<Perceptor*> called_;  ///< the same as pointers, valid until the tree changes: a Ref costs a cache line
-  std::vector<Shared> shared_;      ///< those that offer ISharedView
+  std::vector<Sensor> sensors_;  ///< in tree order
+  std::vector<Called> called_;   ///< the same
+  std::vector<Shared> shared_;   ///< perceptors that offer ISharedView
 
   std::size_t faulty_ = kNone;           ///< index of a perceptor that threw
   std::string fault_;                    ///< what it threw

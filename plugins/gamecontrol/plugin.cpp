@@ -1,5 +1,6 @@
 #include "spark/plugin.h"
 
+#include "api/modifier.h"
 #include "gamecontrol/game_control.h"
 #include "gamecontrol/judges.h"
 #include "gamecontrol/request_effector.h"
@@ -9,5 +10,5 @@
 SPARK_PLUGIN("gamecontrol", "1.0",
              "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
              spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
-             spark::Behavior, spark::SceneEffector, spark::RequestEffector,
+             spark::Behavior, spark::Modifier, spark::NumberModifier, spark::SceneEffector, spark::RequestEffector,
              spark::RequestPerceptor, spark::RequestAspect, spark::ActionLimitAspect, spark::ScriptBehavior)

@@ -29,8 +29,10 @@ void makeFouls(World& w) {
                              {"Soccer.RuleHalfTime", 18},
                              {"Soccer.RuleGoalPauseTime", 1},
                              {"Soccer.PassModeDuration", 1},
-                             {"Soccer.PassModeMinOppBallDist", 0.5}});
+                             {"Soccer.PassModeMinOppBallDist", 0.5},
+                             {"/sys/server/gamecontrol.requests", true}});
   w.kernel.create("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect");
+  setProperty(w.kernel.create("RequestAspect", "/sys/server/gamecontrol/requestRule"), "tolerance", 1);
   for (int n = 1; n <= 5; ++n) w.join("A", n, box(kStanding, n % 3));
   for (int n = 1; n <= 3; ++n) w.join("B", n, box(kStanding, n % 3));
   w.join("B", 4, box(kLying, 0));
@@ -48,6 +50,8 @@ void inputFouls(World& w, int cycle) {
   const auto at = [cycle](int c) { return cycle == c; };
   const auto during = [cycle](int from, int to) { return cycle >= from && cycle < to; };
   if (at(1)) w.trainer("(playMode PlayOn)" + apart() + ball(0, -9)), w.player(kA2).next = "(say hello)";
+  // a request that the rules do not allow
+  if (at(10)) w.player(kA3).next = "(request (perceptor GPS) (name gps2))";
   // too many players of a team in their own penalty area
   if (at(20))
     w.trainer(put("Left", 1, -13.5, 1.5) + put("Left", 2, -13.6, 0.5) + put("Left", 3, -14.5, -0.5) +
@@ -201,6 +205,23 @@ void inputPieces(World& w, int cycle) {
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 
+// ---- robots with imperfect sensors and effectors ----
+
+void makeImperfect(World& w) {
+  w.configureByText(R"lua(
+    include "house.lua"
+    files() scene() physics() simulation() agents{}
+    for _, name in ipairs { "sensors", "effectors", "modifiers" } do plugin(name) end
+    get("/usr/scene/world").gravity = { 0, 0, 0 }
+  )lua");
+  for (int n = 1; n <= 2; ++n) w.join("A", n, "rsg/agent/imperfect.rsg");
+}
+
+void inputImperfect(World& w, int cycle) {
+  w.player(0).next = fmt::format("(force {} 0 1)", cycle % 20 - 10);
+  if (cycle % 3 == 0) w.player(1).next = fmt::format("(force 0 {} 1)", cycle % 7 - 3);
+}
+
 // ---- the replay of a recorded match ----
 
 /// The log of a short match, recorded when it is first needed.
@@ -227,7 +248,8 @@ const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all{
       {"fouls", makeFouls, inputFouls, 900},       {"robots", makeRobots, inputRobots, 150},
       {"spheres", makeSpheres, inputSpheres, 200}, {"spl", makeSpl, inputSpl, 100},
-      {"pieces", makePieces, inputPieces, 150},    {"replay", makeReplay, inputReplay, 100},
+      {"pieces", makePieces, inputPieces, 150},    {"imperfect", makeImperfect, inputImperfect, 150},
+      {"replay", makeReplay, inputReplay, 100},
   };
   return all;
 }

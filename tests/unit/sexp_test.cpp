@@ -298,6 +298,19 @@ TEST_CASE("Truncating keeps the expressions that were read before") {
   }
 }
 
+TEST_CASE("An atom can be replaced by a number, and its neighbours stay as they are") {
+  Predicates p;
+  readSexp("(speed \"a long text as an argument\" (and another 1.5))(next)", p);
+  const Element speed = *p.begin();
+  p.set(speed.at(1).index(), 0.25);
+  p.set(speed.at(2).at(2).index(), std::int64_t(-3));
+  CHECK(speed.at(1).number() == 0.25);
+  CHECK(speed.at(2).at(2).token().kind == Token::Kind::integer);
+  std::string text;
+  writeSexp(p, 2, text);
+  CHECK(text == "(speed 0.25 (and another -3))(next )");
+}
+
 TEST_CASE("Predicates can be converted to values and back") {
   Predicates p;
   readSexp("(a (b 1))", p);

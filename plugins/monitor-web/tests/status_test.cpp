@@ -40,6 +40,8 @@ class TwoAgents : public Node, public IGameControl {
   static void describe(Description<TwoAgents>& d) { d.implements<IGameControl>(); }
   const std::vector<AgentAspect*>& agents() const override { return all; }
   void removeAgent(AgentAspect&, bool) override {}
+  void disqualify(AgentAspect&, std::string_view) override {}
+  std::string judgeRequest(AgentAspect&, const PartRequest&) override { return {}; }
   int agentsSeen() const override { return 2; }
   const Predicates* percepts(const AgentAspect&) const override { return nullptr; }
   double latency(const AgentAspect& agent) const override { return &agent == all[0] ? 0.0125 : std::nan(""); }

@@ -190,6 +190,16 @@ class Predicates {
   void truncate(std::uint32_t index);
   /// Adds a copy of an element of another buffer.
   void append(const Element& element);
+  /// Replaces the atom whose token has that index by a number.
+  void set(std::uint32_t index, double number) {
+    Token& t = atom(index, Token::Kind::number);
+    t.number = number;
+  }
+  /// Replaces the atom whose token has that index by an integer.
+  void set(std::uint32_t index, std::int64_t integer) {
+    Token& t = atom(index, Token::Kind::integer);
+    t.integer = integer;
+  }
 
   /// The first top-level element.
   Element::Iterator begin() const { return {*this, 0}; }
@@ -213,6 +223,13 @@ class Predicates {
   };
   static constexpr std::uint32_t kNone = static_cast<std::uint32_t>(-1);
   std::size_t store(std::string_view text);
+  /// An atom, which becomes one of another kind.
+  Token& atom(std::uint32_t index, Token::Kind kind) {
+    SPARK_ASSERT(index < size() && tokens_[index].kind != Token::Kind::list);
+    tokens_[index] = {};
+    tokens_[index].kind = kind;
+    return tokens_[index];
+  }
   /// Adds a token. It is always inlined, because perceptors add most of their tokens here. The slow path for a full
   /// vector is a separate function, so that the fast path is only a few instructions.
   [[gnu::always_inline]] void push(const Token& t) {
