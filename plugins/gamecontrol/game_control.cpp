@@ -249,12 +249,17 @@ void GameControl::takeTurn(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
-  if (perceptorsTree_.changed(*this))
-    for (const auto& p : participants_) p->dropRemovedPerceptors();
+  const InUse sensing(*this, "agents sense just now");
+  const auto dropRemoved = [this] {
+    if (perceptorsTree_.changed(*this))
+      for (const auto& p : participants_) p->dropRemovedPerceptors();
+  };
+  dropRemoved();
 
-  // Update what several agents' perceptors share.
+  // Update what several agents' perceptors share. Perceptors that are scripts may change the tree here.
   ++round_;
   for (const auto& p : participants_) p->share(round_);
+  dropRemoved();
 
   // Sense, agents in parallel.
   std::atomic<bool> faults = false;
@@ -281,9 +286,10 @@ void GameControl::removeLeaving() {
     Participant& p = **it;
     logInfo(fmt::format("{} leaves.", p.label()));
     if (AgentAspect* aspect = p.aspect()) {
-      for (const auto& child : children())
-        if (auto rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
-      aspect->parent()->remove(*aspect);
+      forEachAspect([&p](ControlAspect& rule) {
+        if (AgentAspect* going = p.aspect()) rule.agentLeaving(*going);
+      });
+      if ((aspect = p.aspect())) aspect->parent()->remove(*aspect);
     } else if (p.connection()) {
       p.connection()->close("its agent was removed from the scene");
     }
@@ -337,9 +343,20 @@ bool GameControl::join(std::unique_ptr<Participant> participant) {
   }
   agentsChanged();
   logInfo(fmt::format("{} joins.", p.label()));
-  for (const auto& child : children())
-    if (auto rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
+  forEachAspect([&p](ControlAspect& rule) {
+    if (AgentAspect* made = p.aspect()) rule.agentConnected(*made);
+  });
   return true;
+}
+
+/// Calls `f` for the control aspects of now, in child order. They may be scripts, which change the tree.
+template <class F>
+void GameControl::forEachAspect(F f) {
+  std::vector<Ref<ControlAspect>> aspects;
+  for (const auto& child : children())
+    if (auto aspect = child->as<ControlAspect>()) aspects.emplace_back(aspect);
+  for (const Ref<ControlAspect>& aspect : aspects)
+    if (ControlAspect* rule = aspect.get()) f(*rule);
 }
 
 /// An aspect may be removed from the tree at any time. Until the next act phase removes its agent, the agent exists,

@@ -2,9 +2,13 @@
 
 #include "gamecontrol/game_control.h"
 #include "gamecontrol/scene_effector.h"
+#include "gamecontrol/script_aspect.h"
 #include "gamecontrol/script_behavior.h"
+#include "gamecontrol/script_effector.h"
+#include "gamecontrol/script_perceptor.h"
 
 SPARK_PLUGIN("gamecontrol", "1.0",
              "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
              spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
-             spark::Behavior, spark::SceneEffector, spark::ScriptBehavior)
+             spark::Behavior, spark::SceneEffector, spark::ScriptBehavior, spark::ScriptPerceptor,
+             spark::ScriptEffector, spark::ScriptAspect)
