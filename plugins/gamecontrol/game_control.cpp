@@ -306,8 +306,13 @@ void GameControl::joinBehaviors() {
     return std::any_of(participants_.begin(), participants_.end(), [b](const auto& p) { return p->behavior() == b; }) ||
            std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end();
   };
-  for (Behavior* b : behaviors)
-    if (!known(b) && !join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(b->id());
+  // One that starts may be a script, which removes others.
+  const std::vector<Ref<Behavior>> joining(behaviors.begin(), behaviors.end());
+  for (const Ref<Behavior>& b : joining) {
+    if (!b || known(b.get())) continue;
+    const std::uint64_t id = b->id();
+    if (!join(std::make_unique<Participant>(*b))) refusedBehaviors_.push_back(id);
+  }
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
 }
 

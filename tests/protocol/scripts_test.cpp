@@ -167,6 +167,20 @@ TEST_CASE("a ScriptEffector may delete itself while it acts") {
   CHECK(a.agents() == 1);
 }
 
+TEST_CASE("a ScriptBehavior may delete itself while it starts or thinks, and its agent leaves") {
+  for (const char* channel : {"start", "think"}) {
+    Arena a;
+    Leaf& behavior = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
+    scripts(a.kernel).attachText(behavior, R"lua(
+      on("start", function(self) self.actions = "(scene robot)" end)
+      on(")lua" + std::string(channel) + R"lua(", function(self) self.actions = "(he1 1)" delete(self) end))lua",
+                                 "test", true);
+    for (int i = 0; i < 6; ++i) a.cycle();
+    CHECK(a.agents() == 0);
+    CHECK(actionLog().empty());
+  }
+}
+
 TEST_CASE("the script of a ScriptAspect judges, and knows who comes and goes") {
   Arena a;
   Leaf& rule = a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule");
