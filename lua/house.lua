@@ -147,9 +147,23 @@ function web()
   return server
 end
 
+--- The log server: sparkctl sets the log's level at run time. `--set logFile=match.log` writes the log to a file as well,
+--- `--set logLines=500` keeps the last messages for sparkctl. Simulations of a batch have no log of their own.
+function logs()
+  local file  = option{ name = "logFile", default = "", doc = "File that gets the log, too; it rotates." }
+  local lines = option{ name = "logLines", default = 0, doc = "How many log messages are kept for sparkctl." }
+  if host.alone then return end
+  plugin "logserver"
+  local server = get("/sys/server/log") or new("LogServer", "/sys/server/log")
+  if file ~= "" then server:new("FileLogSink", "file").file = file end
+  if lines > 0 then server:new("MemoryLogSink", "memory").capacity = lines end
+  return server
+end
+
 --- The socket of sparkctl, which only the host's own user can open. The socket and the page answer requests about
---- contacts, joint angles and percepts. Simulations of a batch have no socket.
+--- contacts, joint angles and percepts. Simulations of a batch have no socket. It makes a log server, too.
 function control()
+  logs()
   if host.alone then return end
   plugin "control"
   plugin "inspect"

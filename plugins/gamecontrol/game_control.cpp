@@ -279,12 +279,17 @@ void GameControl::takeTurn(const Event& event) {
 
 void GameControl::sense(const Event& event) {
   if (!isTurn_) return;
-  if (perceptorsTree_.changed(*this))
-    for (const auto& p : participants_) p->dropRemovedPerceptors();
+  const InUse sensing(*this, "agents sense just now");
+  const auto dropRemoved = [this] {
+    if (perceptorsTree_.changed(*this))
+      for (const auto& p : participants_) p->dropRemovedPerceptors();
+  };
+  dropRemoved();
 
-  // Update what several agents' perceptors share.
+  // Update what several agents' perceptors share. Perceptors that are scripts may change the tree here.
   ++round_;
   for (const auto& p : participants_) p->share(round_);
+  dropRemoved();
 
   // Sense, agents in parallel.
   std::atomic<bool> faults = false;
@@ -311,9 +316,10 @@ void GameControl::removeLeaving() {
     Participant& p = **it;
     logInfo(fmt::format("{} leaves.", p.label()));
     if (AgentAspect* aspect = p.aspect()) {
-      for (const auto& child : children())
-        if (auto rule = child->as<ControlAspect>()) rule->agentLeaving(*aspect);
-      aspect->parent()->remove(*aspect);
+      forEachAspect([&p](ControlAspect& rule) {
+        if (AgentAspect* going = p.aspect()) rule.agentLeaving(*going);
+      });
+      if ((aspect = p.aspect())) aspect->parent()->remove(*aspect);
     } else if (p.connection()) {
       p.connection()->close("its agent was removed from the scene");
     }
@@ -333,12 +339,16 @@ void GameControl::joinBehaviors() {
   const std::size_t atHome = behaviors.size();
   auto* const server = kernel().root().find<ISceneServer>();
   if (Node* const scene = server ? server->activeScene() : nullptr) scene->collect(behaviors);
-  for (std::size_t i = 0; i < behaviors.size(); ++i) {
-    Behavior* const b = behaviors[i];
+  // One that starts may be a script, which removes others.
+  const std::vector<Ref<Behavior>> joining(behaviors.begin(), behaviors.end());
+  for (std::size_t i = 0; i < joining.size(); ++i) {
+    Behavior* const b = joining[i].get();
+    if (!b || known(b)) continue;
     // In the scene only those that are below an aspect of their own make an agent: of the object above the aspect.
     auto* const aspect = i < atHome ? nullptr : b->ancestor<AgentAspect>();
-    if (known(b) || (i >= atHome && (!aspect || aspect->number() != 0 || &aspect->outermost() != aspect))) continue;
-    if (!join(std::make_unique<Participant>(*b), aspect)) refusedBehaviors_.push_back(b->id());
+    if (i >= atHome && (!aspect || aspect->number() != 0 || &aspect->outermost() != aspect)) continue;
+    const std::uint64_t id = b->id();
+    if (!join(std::make_unique<Participant>(*b), aspect)) refusedBehaviors_.push_back(id);
   }
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
 }
@@ -372,15 +382,26 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
     if (p.connection()) p.connection()->close("no agent could be made for it");
-    if (aspect) aspect->parent()->remove(*aspect);
+    if (aspect && !ready) aspect->parent()->remove(*aspect);
     participants_.pop_back();
     return false;
   }
   agentsChanged();
   logInfo(fmt::format("{} joins.", p.label()));
-  for (const auto& child : children())
-    if (auto rule = child->as<ControlAspect>()) rule->agentConnected(*aspect);
+  forEachAspect([&p](ControlAspect& rule) {
+    if (AgentAspect* made = p.aspect()) rule.agentConnected(*made);
+  });
   return true;
+}
+
+/// Calls `f` for the control aspects of now, in child order. They may be scripts, which change the tree.
+template <class F>
+void GameControl::forEachAspect(F f) {
+  std::vector<Ref<ControlAspect>> aspects;
+  for (const auto& child : children())
+    if (auto aspect = child->as<ControlAspect>()) aspects.emplace_back(aspect);
+  for (const Ref<ControlAspect>& aspect : aspects)
+    if (ControlAspect* rule = aspect.get()) f(*rule);
 }
 
 /// An aspect may be removed from the tree at any time. Until the next act phase removes its agent, the agent exists,

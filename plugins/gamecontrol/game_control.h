@@ -62,6 +62,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void joinBehaviors();
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
+  template <class F>
+  void forEachAspect(F f);
   void resolveParsers();
   void resolveRobots();
   void deliver();

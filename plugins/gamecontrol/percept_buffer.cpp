@@ -38,7 +38,7 @@ void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
   if (shared_.empty()) return;
   NowRunning now("share");
   for (const Shared& s : shared_)
-    if (isDue(*s.called, cycle)) now.at(s.called), s.view->share(round);
+    if (s.perceptor && isDue(*s.called, cycle)) now.at(s.called), s.view->share(round);
 }
 
 bool PerceptBuffer::sense(const Event& event, std::int64_t cycle) {

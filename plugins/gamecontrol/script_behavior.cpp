@@ -1,12 +1,12 @@
 #include "gamecontrol/script_behavior.h"
 
-#include "spark/kernel.h"
-#include "spark/script.h"
+#include "gamecontrol/script_event.h"
 
 namespace spark {
 
 void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
   d.doc("A behaviour written in Lua: handles start and think, sets actions to S-expressions.");
+  d.link(&ScriptBehavior::simulation_, At<ISimulation>()).doc("The clock of its events.");
   d.property("actions", &ScriptBehavior::actions_)
       .doc("The agent's next actions: S-expressions, set by the script's handlers.");
   d.method("script", &ScriptBehavior::script)
@@ -21,7 +21,7 @@ void ScriptBehavior::onLink() {
 }
 
 void ScriptBehavior::script(const std::string& file, const Value& arguments) {
-  require<IScriptServer>().attach(*this, file, arguments);
+  gamecontrol::attachScript(*this, file, arguments);
 }
 
 void ScriptBehavior::start(Predicates& actions) { run("start", nullptr, actions); }
@@ -33,10 +33,12 @@ void ScriptBehavior::think(const Predicates& percepts, Predicates& actions) {
 
 void ScriptBehavior::run(std::string_view channel, const Value* data, Predicates& actions) {
   actions_.clear();
-  Event event;
+  Event event = gamecontrol::eventNow(simulation_.get());
   event.name = channel;
   event.data = data;
+  const Ref<ScriptBehavior> self(this);  // its script may delete it
   kernel().events().channel(channel).emitAt(*this, event);
+  if (!self) return;
   const ReadResult result = readSexp(actions_, actions);
   if (!result.message.empty())
     kernel().log().warning("{}.actions: {} at {}:{}.", path(), result.message, result.line, result.column);

@@ -23,6 +23,7 @@ class ScriptBehavior : public Behavior {
   /// Attaches a script; its `...` is `arguments`. Throws Error if it cannot be loaded.
   void script(const std::string& file, const Value& arguments);
   void run(std::string_view channel, const Value* data, Predicates& actions);
+  Link<ISimulation> simulation_;
   std::string actions_;
 };
 

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
-#include <cstring>
 #include <iterator>
 #include <utility>
 
@@ -14,12 +12,6 @@
 namespace spark {
 
 namespace {
-/// True if monitors can read the text: their words end at blanks and brackets, and they know no quotes.
-bool isWord(std::string_view text) {
-  const auto fits = [](unsigned char c) { return c > ' ' && c != 0x7f && !std::strchr("()\"'\\;", c); };
-  return !text.empty() && std::all_of(text.begin(), text.end(), fits);
-}
-
 void checkName(const std::string& name) {
   if (!isWord(name))
     throw RefusedValue("expected the name of an entry: one word without blanks, brackets and quotes, found \"" + name +
@@ -28,12 +20,7 @@ void checkName(const std::string& name) {
 
 /// Throws RefusedValue if monitors cannot read the value.
 void checkValue(const Value& value) {
-  if (value.isList())
-    for (const Value& v : value.toList()) checkValue(v);
-  else if (value.isString() && !isWord(value.toString()))
-    throw RefusedValue("expected text of one word without blanks, brackets and quotes, found " + value.text());
-  else if (value.isNil() || (value.isNumber() && !std::isfinite(value.toNumber())))
-    throw RefusedValue("expected a finite number, a word, a bool, or a list of these, found " + value.text());
+  if (const std::string why = whyUnwritable(value); !why.empty()) throw RefusedValue(why);
 }
 
 /// Entries that a status has under other names, or not at all.

@@ -162,7 +162,7 @@ TEST_CASE("Members do not hide what every node has in Lua, with two known except
   AllPlugins host;
   forEachClass(host, [](Plugin&, ClassObject& c) {
     for (const char* builtin :
-         {"class", "parent", "alive", "find", "children", "new", "delete", "attachScript", "on"}) {
+         {"class", "parent", "alive", "isA", "find", "children", "new", "delete", "attachScript", "on"}) {
       INFO(builtin);
       CHECK_FALSE(c.property(builtin));
       CHECK_FALSE(c.method(builtin));

@@ -3,6 +3,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "client.h"
 #include "process.h"
 #include "temporary_folder.h"
 #include "test_support.h"
@@ -96,4 +97,57 @@ on("rule", function(self, event) if event.cycle % 10 == 0 then Status.score = {S
   CHECK(result["score"] == Json({5, 0}));
   CHECK(result["teams"] == Json({"East", "West"}));
   CHECK(result["stateHash"] == row["stateHash"]);
+}
+
+namespace {
+/// sparkhost with the sumo game of lua/, which is written in Lua alone.
+std::vector<std::string> luaSumo(std::vector<std::string> more) {
+  std::vector<std::string> out{
+      program("sparkhost"), "--config",       "sumo.lua", "--rate", "max", "--agent-port", "0", "--set",
+      "web=false",          "--monitor-port", "0"};
+  out.insert(out.end(), more.begin(), more.end());
+  return out;
+}
+}  // namespace
+
+TEST_CASE("A game with perceptors, effectors, rule and players in Lua alone is played to its end") {
+  const auto play = [](const char* seed) {
+    const Finished run = runToEnd(luaSumo({"--seed", seed, "--set", "bouts=3"}));
+    INFO(run.errors);
+    REQUIRE(run.code == 0);
+    CHECK_THAT(run.errors, Contains("bout 3 took"));
+    return Json::parse(run.out.substr(run.out.find('\n') + 1));
+  };
+  const Json result = play("7");
+  CHECK(result["playMode"] == "Over");
+  CHECK(result["teams"] == Json({"Red", "Blue"}));
+  CHECK(result["status"]["bout"] == 3);
+  CHECK(result["score"][0].get<int>() + result["score"][1].get<int>() > 0);
+  CHECK(result["faults"] == 0);
+  const Json again = play("7");
+  CHECK(again["score"] == result["score"]);
+  CHECK(again["stateHash"] == result["stateHash"]);
+  CHECK(play("8")["stateHash"] != result["stateHash"]);
+}
+
+TEST_CASE("An agent over TCP plays against one inside in a game in Lua") {
+  Process host(luaSumo({"--sync", "--set", "players=1", "--set", "bouts=2", "--set", "limit=5"}));
+  Client agent(Json::parse(host.line())["agentPort"].get<unsigned short>());
+  agent.send("(syn)");
+  std::string percepts;
+  try {
+    for (int i = 0;; ++i) {
+      percepts = agent.receive();
+      agent.send(i == 3 ? "(push fast)(syn)" : "(push 1 0)(syn)");
+    }
+  } catch (const boost::system::system_error&) {
+    // The game is over.
+  }
+  const Json result = Json::parse(host.line());
+  CHECK(host.wait() == 0);
+  CHECK_THAT(percepts, Contains("(opponent (bearing ") && Contains(") (distance ") && Contains("(middle (bearing "));
+  CHECK_THAT(host.errors(),
+             Contains("push: expected (push forwards turning), two numbers from -1 to 1, found 1 value"));
+  CHECK(result["playMode"] == "Over");
+  CHECK(result["status"]["bout"] == 2);
 }

@@ -277,6 +277,9 @@ TEST_CASE("sparkctl loads and unloads plugins of a running simulation") {
     CHECK(ctl({"unload", "drawing"}).code == 0);
     CHECK(ctl({"get", "/classes/DrawingServer"}).code == 1);
   }
+  CHECK(ctl({"load", "drawing"}).code == 0);
+  CHECK(ctl({"call", "/plugins/drawing.unload"}).code == 0);
+  CHECK(ctl({"get", "/classes/DrawingServer"}).code == 1);
   const Finished used = ctl({"unload", "simulation"});
   CHECK(used.code == 1);
   CHECK_THAT(used.errors, Contains("cannot unload plugin 'simulation' while its objects live") &&
@@ -287,6 +290,27 @@ TEST_CASE("sparkctl loads and unloads plugins of a running simulation") {
   p.signal(SIGTERM);
   p.line();
   CHECK(p.wait() == 0);
+}
+
+TEST_CASE("sparkctl changes the level of the log and reads the last messages, and a file gets them, too") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("small.lua", std::string(kSmall) + "print 'said by the config'\n"),
+                    file = (folder.path() / "log.txt").string();
+  Process p(host({"--config", config, "--log-level", "error", "--set", "logLines=50", "--set", "logFile=" + file}));
+  p.line();
+  const auto ctl = controlOf(p);
+  CHECK_THAT(ctl({"get", "/sys/server/log.level"}).out, Contains("error"));
+  CHECK(ctl({"set", "/sys/server/log.level", "debug"}).code == 0);
+  CHECK_THAT(ctl({"get", "/sys/server/log.level"}).out, Contains("debug"));
+  const Finished typo = ctl({"set", "/sys/server/log.level", "debg"});
+  CHECK(typo.code == 1);
+  CHECK_THAT(typo.errors, Contains("expected one of 'trace', 'debug', 'info', 'warning', 'error', 'off'"));
+  CHECK_THAT(ctl({"call", "/sys/server/log/memory.tail", "1000"}).out, Contains("said by the config"));
+  CHECK(ctl({"set", "/sys/server/log/file.level", "off"}).code == 0);
+  p.signal(SIGTERM);
+  p.line();
+  CHECK(p.wait() == 0);
+  CHECK_THAT(textOf(file), Contains("said by the config"));
 }
 
 TEST_CASE("sparkctl refuses to rename or remove the servers of a running simulation") {

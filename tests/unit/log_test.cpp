@@ -35,7 +35,36 @@ TEST_CASE("Text from outside cannot forge lines or control a terminal") {
   CHECK(text == "a\\x00b");
 }
 
+TEST_CASE("Further sinks have levels of their own") {
+  Log log;
+  std::string text, one, two;
+  log.setSink([&](Level, std::string_view line) { text.append(line).append("|"); });
+  const int first = log.addSink(Level::debug, [&](Level, std::string_view line) { one.append(line).append("|"); });
+  const int second = log.addSink(Level::error, [&](Level, std::string_view line) { two.append(line).append("|"); });
+  CHECK(log.enabled(Level::debug));
+  CHECK_FALSE(log.enabled(Level::trace));
+  CHECK(log.level() == Level::info);
+  log.debug("a");
+  log.info("b");
+  log.error("c");
+  log.setLevel(first, Level::off);
+  CHECK_FALSE(log.enabled(Level::debug));
+  log.setLevel(second, Level::trace);
+  log.setLevel(Level::off);
+  log.trace("d");
+  log.removeSink(second);
+  log.removeSink(second);
+  log.setLevel(second, Level::trace);
+  CHECK_FALSE(log.enabled(Level::error));
+  log.error("e");
+  CHECK(text == "b|c|");
+  CHECK(one == "a|b|c|");
+  CHECK(two == "c|d|");
+}
+
 TEST_CASE("Levels have names") {
+  CHECK(spark::nameOf(Level::warning) == "warning");
+  CHECK(spark::levelNames().size() == 6);
   CHECK(spark::levelFromName("debug") == Level::debug);
   CHECK_THROWS_WITH(spark::levelFromName("warnin"),
                     Catch::Contains("expected a log level") && Catch::Contains("'warning'"));

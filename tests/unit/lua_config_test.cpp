@@ -122,6 +122,17 @@ TEST_CASE("an attached script is taken from the working folder only if no other 
   CHECK(a.label == "folder");
 }
 
+TEST_CASE("a script that is attached later is found next to the config that has run") {
+  LuaHost h;
+  std::filesystem::create_directories(h.folder / "mine");
+  h.write("mine/a.lua", "");
+  h.write("mine/s.lua", "self.label = 'beside the config'");
+  Thing& a = h.thing("/usr/a");
+  scripts(h.kernel).runConfig((h.folder / "mine/a.lua").string());
+  scripts(h.kernel).attach(a, "s.lua");
+  CHECK(a.label == "beside the config");
+}
+
 TEST_CASE("a config in an endless loop ends when the kernel is stopped, even if it catches errors") {
   for (const char* loop : {"while true do end", "while true do pcall(function() while true do end end) end"}) {
     LuaHost h;

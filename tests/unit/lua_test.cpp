@@ -80,6 +80,44 @@ TEST_CASE("a member of the class takes precedence over a built-in of the same na
                     "attach a script to /usr/c"));
 }
 
+TEST_CASE("nodes tell if they are of a class or offer an interface") {
+  LuaHost h;
+  h.thing("/usr/a");
+  CHECK(h.run("local a = get('/usr/a') return {a:isA('Thing'), a:isA('Node'), a:isA('Leaf'), a:isA('Group')}") ==
+        Value(List{true, true, true, false}));
+  CHECK(h.run("local s = get('/sys/server/script') return {s:isA('IScriptServer'), s:isA('ITelephone')}") ==
+        Value(List{true, false}));
+  CHECK_THAT(h.failure("get('/usr/a'):isA(3)"), Contains("expected the name of a class or interface (a string)"));
+}
+
+TEST_CASE("class objects tell bases, interfaces, properties and methods") {
+  LuaHost h;
+  h.run("thing, script = get('/classes/Thing'), get('/classes/ScriptServer')");
+  CHECK(h.run("return {thing:isA('Thing'), thing:isA('Node'), thing:isA('Class'), script:isA('IScriptServer')}") ==
+        Value(List{true, true, false, true}));
+  CHECK(h.run("return script:interfaces()") == Value(List{"IScriptServer"}));
+  CHECK(h.run("return {thing.abstract, get('/classes/Node').abstract}") == Value(List{false, false}));
+  h.run(
+      "properties, methods = {}, {} "
+      "for _, p in ipairs(thing:properties()) do properties[p.name] = p end "
+      "for _, m in ipairs(thing:methods()) do methods[m.name] = m end");
+  CHECK(h.run("local p = properties.mass return {p.type, p.unit, p.doc, p.min, p.readOnly, p.default}") ==
+        Value(List{"number", "kg", "How heavy it is.", 0.0, false, 1.0}));
+  CHECK(h.run("return {properties.fixed.readOnly, properties.mass.max == nil, properties.name.type}") ==
+        Value(List{true, true, "string"}));
+  CHECK(h.run("local m = methods.add return {m.doc, m.returns, m.parameters}") ==
+        Value(List{"Adds.", "number", List{"a: number", "b: number"}}));
+  CHECK(h.run("return {methods.setMass.parameters, #methods.raise.parameters, methods.raise.returns == nil}") ==
+        Value(List{List{"mass: number [kg]"}, 1, true}));
+}
+
+TEST_CASE("a class object makes objects") {
+  LuaHost h;
+  CHECK(h.run("return get('/classes/Thing'):new('/usr/made/here').path") == Value("/usr/made/here"));
+  CHECK(h.run("return get('/classes/Thing').living") == Value(1));
+  CHECK_THAT(h.failure("get('/classes/Thing'):new()"), Contains("expected a path (a string), found no value"));
+}
+
 TEST_CASE("nodes are equal by identity and work as table keys") {
   LuaHost h;
   h.thing("/usr/a");

@@ -100,6 +100,8 @@ TEST_CASE("Unloading is refused while objects of the plugin exist, and the error
   const std::string why = refusal([&] { loader.unload("fixture-base"); });
   CHECK_THAT(why, Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)") &&
                       Catch::Contains("/usr/a/b (FixtureBase)"));
+  for (int i = 0; i < 20; ++i) a.create("FixtureBase");
+  CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("\n  and 12 more\nRemove them first."));
   host.kernel.root().child("usr")->asNode()->remove(a);
   const auto loose = host.kernel.classOf("FixtureBase").create();
   CHECK_THAT(refusal([&] { loader.unload("fixture-base"); }), Catch::Contains("1 outside the tree"));
@@ -219,4 +221,16 @@ TEST_CASE("A script unloads a plugin at once, or between two cycles if a handler
   CHECK(host.kernel.findClass("FixtureBase") != nullptr);
   host.kernel.plugins().settle();
   CHECK(host.kernel.findClass("FixtureBase") == nullptr);
+}
+
+TEST_CASE("A plugin's node unloads it as well") {
+  TestHost host(false);
+  host.kernel.plugins().scan(fixtures("fixture-plugins"));
+  ScriptServer& lua = scripts(host.kernel);
+  lua.run("plugin 'fixture-base'  new('FixtureBase', '/usr/a')  node = get '/plugins/fixture-base'", "test");
+  CHECK_THAT(refusal([&] { lua.run("node:unload()", "test"); }),
+             Catch::Contains("while its objects live") && Catch::Contains("/usr/a (FixtureBase)"));
+  CHECK(lua.run("delete '/usr/a'  node:unload()  return node.alive", "test") == Value(false));
+  CHECK(host.kernel.findClass("FixtureBase") == nullptr);
+  CHECK(lua.run("return plugin('fixture-base').registered", "test") == Value(true));
 }

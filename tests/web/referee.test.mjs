@@ -88,6 +88,20 @@ test("the referee switches offside off and on in a running match", async (t) => 
   }
 });
 
+test("the referee reads the host's log, which spectators cannot", async (t) => {
+  const host = await startHost(t, ...ruled, "--set", "logLines=50");
+  const page = await openPage(t, `${host.url}?panel=host#token=${token}`);
+  await part(page, "log-text").waitFor();
+  assert.match(await part(page, "log-text").textContent(), /info +Web: http/);
+
+  const spectator = await openPage(t, `${host.url}?panel=host`);
+  await until(spectator, "the match", (s) => s.connection === "open" && !s.referee);
+  assert.equal(await part(spectator, "log").isVisible(), false);
+  const answer = await spectator.evaluate(ask, { do: "call", path: "/sys/server/log/memory", method: "tail", arguments: [] });
+  assert.equal(answer.ok, false);
+  assert.match(answer.error, /referee|token/i);
+});
+
 test("entering the token opens the console", async (t) => {
   const host = await startHost(t, ...ruled);
   const page = await openPage(t, `${host.url}?panel=referee`);

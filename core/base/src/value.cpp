@@ -249,5 +249,7 @@ std::string Convert<std::string>::from(Args& args) {
 Value Convert<std::string>::to(const std::string& v) { return v; }
 Value Convert<Value>::from(Args& args) { return args.take(); }
 Value Convert<Value>::to(const Value& v) { return v; }
+TableValue Convert<TableValue>::from(Args& args) { return {args.take()}; }
+Value Convert<TableValue>::to(const TableValue& v) { return v.value; }
 
 }  // namespace spark

@@ -75,6 +75,17 @@ void ClassObject::describe(Description<ClassObject>& d) {
   d.property("base", &ClassObject::baseName).doc("Name of the base class.");
   d.property("living", &ClassObject::livingCount).doc("Number of objects of exactly this class.");
   d.property("providedBy", &ClassObject::pluginName).doc("The plugin that registered it; empty for the kernel's own.");
+  d.property("abstract", &ClassObject::isAbstract).doc("Only a base, without objects of its own.");
+  d.method("isA", &ClassObject::isOrOffers)
+      .parameters({"name"})
+      .doc("Whether that is its name, or the name of one of its bases or interfaces.");
+  d.method("interfaces", &ClassObject::interfaceNames).doc("Names of all its interfaces, those of bases first.");
+  d.method("properties", &ClassObject::propertyTables)
+      .doc(
+          "A table for each property, those of bases first: name, type, doc, readOnly, state, and where they exist "
+          "unit, min, max, choices and default.");
+  d.method("methods", &ClassObject::methodTables)
+      .doc("A table for each method, those of bases first: name, doc, parameters (\"name: type [unit]\"), returns.");
 }
 
 std::int64_t ClassObject::livingCount() const { return static_cast<std::int64_t>(living_); }
@@ -159,6 +170,14 @@ void ClassObject::warnOfMissing(const Leaf& leaf) const {
 bool ClassObject::isA(std::string_view className) {
   for (ClassObject* c = this; c; c = c->base())
     if (c->name() == className) return true;
+  return false;
+}
+
+bool ClassObject::isOrOffers(const std::string& name) {
+  for (ClassObject* c = this; c; c = c->base())
+    if (c->name() == name ||
+        std::any_of(c->interfaces().begin(), c->interfaces().end(), [&](const auto& i) { return i.id.name == name; }))
+      return true;
   return false;
 }
 

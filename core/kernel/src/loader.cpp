@@ -123,7 +123,11 @@ void Plugin::describe(Description<Plugin>& d) {
   d.property("file", &Plugin::file).doc("The file it was loaded from.");
   d.property("classes", &Plugin::classes).doc("Names of the classes it provides.");
   d.property("registered", &Plugin::registered).doc("True when a config line registered its classes.");
+  d.method("unload", &Plugin::unload)
+      .doc("Unloads it; in a handler of an event when the cycle is over. Refused while objects of its classes live.");
 }
+
+void Plugin::unload() { kernel().plugins().unloadLater(std::string(name())); }  // a copy: it may remove this object
 
 Loader::Loader(Kernel& kernel) : kernel_(kernel) {}
 
@@ -335,18 +339,20 @@ Plugin& Loader::unused(std::string_view name) const {
   Plugin& plugin = static_cast<Plugin&>(*found);
   const std::vector<ClassObject*> classes = classesOf(plugin);
 
-  // Objects of its classes, with the paths of those in the tree.
-  std::size_t count = 0;
+  // Objects of its classes, with the paths of some in the tree.
+  constexpr std::size_t kMaxListed = 10;
+  std::size_t count = 0, listed = 0;
   for (ClassObject* c : classes) count += c->living();
   std::string living;
   const auto walk = [&](auto& self, const Node& node) -> void {
     for (const auto& c : node.children()) {
-      if (std::find(classes.begin(), classes.end(), c->classObject()) != classes.end())
+      if (std::find(classes.begin(), classes.end(), c->classObject()) != classes.end() && listed++ < kMaxListed)
         living += fmt::format("\n  {} ({})", c->path(), c->classObject()->name());
       if (c->asNode()) self(self, *c->asNode());
     }
   };
   walk(walk, kernel_.root());
+  if (listed > kMaxListed) living += fmt::format("\n  and {} more", listed - kMaxListed);
   if (count > 0)
     throw Error(fmt::format("cannot unload plugin '{}' while its objects live:{}\nRemove them first.", plugin.name(),
                             living.empty() ? fmt::format(" {} outside the tree", count) : living));

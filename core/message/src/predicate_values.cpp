@@ -1,5 +1,9 @@
 // Predicates as values and back.
 
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
 #include "spark/predicates.h"
 
 namespace spark {
@@ -54,6 +58,23 @@ List toList(const Predicates& predicates) {
 
 void append(const List& values, Predicates& out) {
   for (const Value& v : values) appendValue(v, out);
+}
+
+bool isWord(std::string_view text) {
+  const auto fits = [](unsigned char c) { return c > ' ' && c != 0x7f && !std::strchr("()\"'\\;", c); };
+  return !text.empty() && std::all_of(text.begin(), text.end(), fits);
+}
+
+std::string whyUnwritable(const Value& value) {
+  if (value.isList()) {
+    for (const Value& v : value.toList())
+      if (std::string why = whyUnwritable(v); !why.empty()) return why;
+  } else if (value.isString() && !isWord(value.toString())) {
+    return "expected text of one word without blanks, brackets and quotes, found " + value.text();
+  } else if (value.isNil() || (value.isNumber() && !std::isfinite(value.toNumber()))) {
+    return "expected a finite number, a word, a bool, or a list of these, found " + value.text();
+  }
+  return {};
 }
 
 }  // namespace spark

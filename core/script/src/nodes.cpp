@@ -25,7 +25,7 @@ using SubscriptionRef = std::weak_ptr<Subscription>;
 
 /// The names that every node has in Lua.
 const std::vector<std::string>& builtins() {
-  static const std::vector<std::string> names{"name",     "path", "class",  "parent",       "alive",  "find",
+  static const std::vector<std::string> names{"name",     "path", "class",  "parent",       "alive",  "isA", "find",
                                               "children", "new",  "delete", "attachScript", "attach", "on"};
   return names;
 }
@@ -57,6 +57,12 @@ int pushAllowed(lua_State* L, Leaf* leaf) {
   return 1;
 }
 
+int nodeIsA(lua_State* L) {
+  const std::string name(checkString(L, 2, "the name of a class or interface"));
+  lua_pushboolean(L, self(L, "isA").classObject()->isOrOffers(name));
+  return 1;
+}
+
 int nodeFind(lua_State* L) {
   Leaf& node = self(L, "find");
   return pushAllowed(L, node.find(checkString(L, 2, "a path")));
@@ -74,16 +80,19 @@ int nodeChildren(lua_State* L) {
   return 1;
 }
 
-int nodeNew(lua_State* L) {
-  mustBeTrusted(L, "node:new");
-  Leaf& node = self(L, "new");
+/// class:new(path) or node:new(class, name).
+Leaf& create(lua_State* L, Leaf& node) {
+  if (auto c = node.as<ClassObject>()) return node.kernel().create(c->name(), checkString(L, 2, "a path"));
   if (!node.asNode())
     throw Error(
         fmt::format("cannot make a child of {}: a {} cannot have children", node.path(), node.classObject()->name()));
   const std::string_view className = checkString(L, 2, "a class name");
-  Leaf& made =
-      node.asNode()->create(className, lua_isnoneornil(L, 3) ? std::string_view() : checkString(L, 3, "a name"));
-  Ref<Leaf> alive(&made);  // a setter that apply() calls may remove it
+  return node.asNode()->create(className, lua_isnoneornil(L, 3) ? std::string_view() : checkString(L, 3, "a name"));
+}
+
+int nodeNew(lua_State* L) {
+  mustBeTrusted(L, "node:new");
+  Ref<Leaf> alive(&create(L, self(L, "new")));  // a setter that apply() calls may remove it
   State::of(L).runtime().settings.apply();
   pushNode(L, alive.get());
   return 1;
@@ -143,7 +152,10 @@ int callNodeMethod(lua_State* L) {
   for (int i = 2; i <= lua_gettop(L); ++i) arguments.push_back(toValue(L, i));
   refuseScript(node, name, arguments);
   if (isShielded(State::of(L).runtime(), node, name, arguments)) return 0;
-  pushValue(L, callMethod(node, name, arguments));
+  const Method* method = node.classObject()->method(name);
+  const bool asTables = method && method->returns == Convert<TableValue>::typeName();
+  const Value result = callMethod(node, name, arguments);
+  asTables ? pushTables(L, result) : pushValue(L, result);
   return 1;
 }
 
@@ -243,7 +255,8 @@ void finishMetatable(lua_State* L, lua_CFunction destroy, const char* name) {
 }  // namespace
 
 void openNodes(lua_State* L) {
-  constexpr luaL_Reg kFunctions[] = {{"find", guarded<nodeFind>},
+  constexpr luaL_Reg kFunctions[] = {{"isA", guarded<nodeIsA>},
+                                     {"find", guarded<nodeFind>},
                                      {"children", guarded<nodeChildren>},
                                      {"new", guarded<nodeNew>},
                                      {"delete", guarded<nodeDelete>},

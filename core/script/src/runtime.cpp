@@ -28,7 +28,7 @@ void Runtime::close() {
 // The user chooses the config, so the working folder is searched first.
 Script Runtime::readConfig(std::string_view file) {
   std::vector<fs::path> places{fs::current_path()};
-  if (!configFolder.empty()) places.push_back(configFolder);
+  if (inConfig) places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
   return read(file, "config", places);
 }

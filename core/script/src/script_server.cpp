@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "restore.h"
 #include "runtime.h"
 #include "values.h"
@@ -39,7 +41,12 @@ void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.a
 void ScriptServer::runConfig(std::string_view file) {
   const auto running = impl_;
   const script::Script config = running->readConfig(file);
-  const script::Restore keepFolder(running->configFolder, config.path.parent_path());
+  // The folder of the outermost config stays: scripts that a scene file names later are searched in it.
+  std::optional<script::Restore<fs::path>> keepFolder;
+  if (running->inConfig)
+    keepFolder.emplace(running->configFolder, config.path.parent_path());
+  else
+    running->configFolder = config.path.parent_path();
   {
     const script::Restore shielding(running->inConfig, true);
     running->run(config.text, fmt::format("@{}", file));

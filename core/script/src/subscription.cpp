@@ -1,11 +1,29 @@
 #include "subscription.h"
 
+#include <fmt/format.h>
+
 #include "nodes.h"
 #include "restore.h"
 #include "runtime.h"
+#include "spark/error.h"
 #include "values.h"
 
 namespace spark::script {
+
+namespace {
+/// The value on top of the stack, which `function` (a reference) has returned. Throws Error with the place of the
+/// function if it is no value.
+Value returned(lua_State* L, int function) {
+  try {
+    return toValue(L, -1);
+  } catch (const Error& e) {
+    lua_Debug ar{};
+    lua_rawgeti(L, LUA_REGISTRYINDEX, function);
+    lua_getinfo(L, ">S", &ar);
+    throw Error(fmt::format("{}:{}: what this function returned: {}", ar.short_src, ar.linedefined, e.what()));
+  }
+}
+}  // namespace
 
 Subscription::~Subscription() { state->release(function); }
 
@@ -38,7 +56,8 @@ void Subscription::run(const Event& event) {
     else
       lua_pushnil(L);
     lua_setfield(L, -2, "data");
-    lua_call(L, 2, 0);
+    lua_call(L, 2, event.answer ? 1 : 0);
+    if (event.answer) *event.answer = returned(L, function);
   });
   if (!failure) return;
   runtime.report(*failure, *this);

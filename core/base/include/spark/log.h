@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The log of one kernel. Writes to stderr unless a sink is set. Thread safe.
+/// The log of one kernel. Writes to stderr unless a sink is set, and to further sinks. Thread safe.
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "spark/abi/spark/log.h"
 
@@ -20,6 +21,10 @@ enum class Level { trace, debug, info, warning, error, off };
 
 /// The level of that name: "trace", "debug", "info", "warning", "error" or "off". Throws Error for any other word.
 Level levelFromName(std::string_view name);
+/// The names of all levels, in their order.
+const std::vector<std::string>& levelNames();
+/// The name of a level.
+const std::string& nameOf(Level level);
 
 /// A kernel's log. A message below the level costs one comparison.
 class Log {
@@ -29,14 +34,20 @@ class Log {
   /// A log at level `info` that writes to stderr.
   Log();
   ~Log();
-  /// Drops messages below `level` from now on.
-  void setLevel(Level level) { level_ = level; }
-  /// The lowest level that is written.
+  /// Drops messages below `level` from now on, on stderr or the sink in its place.
+  void setLevel(Level level);
+  /// The lowest level that is written to stderr or the sink in its place.
   Level level() const { return level_; }
-  /// True if messages of that level are written.
-  bool enabled(Level level) const { return level >= level_; }
+  /// True if messages of that level are written anywhere.
+  bool enabled(Level level) const { return level >= lowest_; }
   /// Sends every message that passes the level to `sink` instead of stderr. An empty sink restores stderr.
   void setSink(Sink sink);
+  /// Sends messages of at least `level` to a further sink, which must not block. Returns a number for the calls below.
+  int addSink(Level level, Sink sink);
+  /// Changes the level of a further sink. Ignores unknown numbers.
+  void setLevel(int sink, Level level);
+  /// Removes a further sink. It is not called after this function has returned. Ignores unknown numbers.
+  void removeSink(int sink);
 
   /// Writes a message at level `trace`, formatted by fmt::format only if the level is enabled.
   template <class... A>
@@ -71,8 +82,10 @@ class Log {
 
  private:
   struct Impl;
+  void updateLowest();
   std::unique_ptr<Impl> impl_;
-  std::atomic<Level> level_{Level::info};
+  std::atomic<Level> level_{Level::info};   ///< of stderr
+  std::atomic<Level> lowest_{Level::info};  ///< of stderr and all sinks
   std::atomic<std::int64_t> errors_{0};
 };
 

@@ -119,6 +119,12 @@ struct Args {
   const Value& take();
 };
 
+/// A value whose lists of [key, value] pairs with text keys are tables for scripts, at any depth; for all others they
+/// are lists.
+struct TableValue {
+  Value value;
+};
+
 /// Converts between a C++ type and values. Specialise it for further types. A specialisation has:
 /// - `kScalars`, the number of plain arguments that from() reads, or -1 for all that are left; a list of that length is
 ///   accepted in their place;
@@ -144,6 +150,7 @@ SPARK_CONVERT(double, "number");
 SPARK_CONVERT(float, "number");
 SPARK_CONVERT(std::string, "string");
 SPARK_CONVERT(Value, "any");
+SPARK_CONVERT(TableValue, "table");
 #undef SPARK_CONVERT
 
 /// Reads all arguments that are left: either one list, or any number of plain arguments.

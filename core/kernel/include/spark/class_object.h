@@ -48,6 +48,8 @@ class ClassObject : public Leaf {
   ClassObject* base();
   /// True if `className` is this class or one of its bases.
   bool isA(std::string_view className);
+  /// True if `name` is this class, one of its bases, or an interface of one of them.
+  bool isOrOffers(const std::string& name);
   /// The property of that name, own or inherited; nullptr if there is none. A derived class overrides its bases.
   const Property* property(std::string_view name);
   /// The method of that name, own or inherited, with setters, getters and aliases; nullptr if there is none. A derived
@@ -87,6 +89,9 @@ class ClassObject : public Leaf {
   void resolve();
   std::int64_t livingCount() const;
   std::string pluginName() const;
+  std::vector<std::string> interfaceNames();
+  TableValue propertyTables();
+  TableValue methodTables();
 
   /// An entry of the table of own and inherited interfaces: open addressing by id, at most a quarter full, because
   /// walks through the tree spend most of their time on queries, and most queries fail.

@@ -22,6 +22,7 @@ struct Event {
   double step = 0;              ///< since the last event of this kind [s]
   std::int64_t cycle = 0;       ///< counter of the emitter
   const Value* data = nullptr;  ///< further data, nullptr if there is none
+  Value* answer = nullptr;      ///< set to what a script's handler returns; nullptr: the emitter does not want it
 };
 
 /// The order in which the handlers of a channel run. Handlers of one node run in the order in which they were added.

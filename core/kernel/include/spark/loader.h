@@ -35,8 +35,8 @@ class Loader {
   Plugin& use(std::string_view name);
   /// Loads one file and registers its classes. Throws Error if either fails.
   Plugin& useFile(const std::filesystem::path& file);
-  /// Removes the classes of a plugin and unmaps its file. Throws Error if objects of its classes exist (with their
-  /// paths), if classes of other plugins derive from its classes, or if event handlers run.
+  /// Removes the classes of a plugin and unmaps its file. Throws Error if objects of its classes exist (with the
+  /// paths of some), if classes of other plugins derive from its classes, or if event handlers run.
   void unload(std::string_view name);
   /// As unload(), but while event handlers run it only checks, and the next settle() unloads the plugin or logs why it
   /// cannot. Throws Error as unload().

@@ -34,6 +34,7 @@ class Plugin : public Leaf {
 
  private:
   friend class Loader;
+  void unload();
   std::string version_, doc_, file_;
   std::vector<std::string> classes_;
   std::vector<std::function<void()>> atUnload_;

@@ -279,6 +279,13 @@ List toList(const Predicates& predicates);
 /// Adds the values as top-level elements. Bools and nil become texts.
 void append(const List& values, Predicates& out);
 
+/// True for a text that can be written without quotes: it has no blanks, control characters, brackets, quotes,
+/// backslashes and semicolons, and is not empty.
+bool isWord(std::string_view text);
+/// "" if the value can be written in any language of agents and monitors: a finite number, a word, a bool, or a list of
+/// these. Otherwise what was expected and found.
+std::string whyUnwritable(const Value& value);
+
 /// The result of reading S-expressions.
 struct ReadResult {
   std::string message;                 ///< the error, "" if everything was read

@@ -1,8 +1,9 @@
-/// Status of the host: speed, spectators, latency of agents; also the frame rate of this viewer.
+/// Status of the host: speed, spectators, latency of agents, the log; also the frame rate of this viewer.
 import type { Status } from "../model";
 import type { App } from "./app";
 import { h, setHidden, setText } from "./dom";
 import { count, factor, latency } from "./format";
+import { LogView } from "./log_view";
 
 type Agent = Status["agents"][number];
 
@@ -25,11 +26,12 @@ export class HostPanel {
     h("thead", {}, h("tr", {}, h("th", { scope: "col" }, "Agent"), h("th", { scope: "col", title: "Wall time from its percepts to its answer" }, "Answers after"))),
     this.body,
   );
+  private readonly log = new LogView();
   private rows = new Map<string, { row: HTMLElement; cell: HTMLElement }>();
 
   constructor(container: HTMLElement, private readonly app: App) {
     container.classList.add("padded");
-    container.append(this.list, this.table);
+    container.append(this.list, this.table, this.log.element);
   }
 
   /// Call it about once a second. `frameRate`: pictures per second of this viewer.
@@ -43,6 +45,7 @@ export class HostPanel {
     this.fact("Drawn here", `${frameRate.toFixed(0)} pictures/s`);
     for (const [name, value] of status?.facts ?? []) this.fact(name, value);
     this.agents(status?.agents ?? []);
+    this.log.update(this.app.live, performance.now());
   }
 
   private fact(name: string, value: string): void {

@@ -1,0 +1,40 @@
+#include "gamecontrol/script_aspect.h"
+
+#include "gamecontrol/script_event.h"
+
+namespace spark {
+
+namespace {
+constexpr std::string_view kJudge = "judge", kConnected = "agentConnected", kLeaving = "agentLeaving";
+}
+
+void ScriptAspect::describe(Description<ScriptAspect>& d) {
+  d.doc("A rule written in Lua: its handlers of judge, agentConnected and agentLeaving.");
+  d.link(&ScriptAspect::simulation_, At<ISimulation>()).doc("The clock of its events.");
+  d.method("script", &ScriptAspect::script)
+      .parameters({"file", "arguments"})
+      .optional(1)
+      .doc("Attaches the script, which reads the arguments as `local args = ...`.");
+}
+
+void ScriptAspect::onLink() {
+  Events& events = kernel().events();
+  events.define(kJudge, Order::parentsFirst, "At a ScriptAspect: applies the rule, once in each cycle.");
+  events.define(kConnected, Order::parentsFirst, "At a ScriptAspect: an agent has come; data: the path of its aspect.");
+  events.define(kLeaving, Order::parentsFirst, "At a ScriptAspect: an agent goes; data: the path of its aspect.");
+}
+
+void ScriptAspect::script(const std::string& file, const Value& arguments) {
+  gamecontrol::attachScript(*this, file, arguments);
+}
+
+void ScriptAspect::rule(const Event& event) { gamecontrol::askScripts(*this, kJudge, event); }
+void ScriptAspect::agentConnected(AgentAspect& agent) { tell(kConnected, agent); }
+void ScriptAspect::agentLeaving(AgentAspect& agent) { tell(kLeaving, agent); }
+
+void ScriptAspect::tell(std::string_view channel, const AgentAspect& agent) {
+  const Value data = agent.path();
+  gamecontrol::askScripts(*this, channel, gamecontrol::eventNow(simulation_.get()), &data);
+}
+
+}  // namespace spark

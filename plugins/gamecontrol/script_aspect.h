@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// A rule written in Lua.
+
+#include "api/agents.h"
+#include "spark/describe.h"
+
+namespace spark {
+
+/// Its script's handlers are the rule: `judge` runs once in each cycle while the aspect is enabled, `agentConnected`
+/// and `agentLeaving` when an agent comes and goes. Their `event.data` is the path of the agent's aspect.
+class ScriptAspect : public ControlAspect {
+  SPARK_CLASS(ScriptAspect, ControlAspect)
+ public:
+  static void describe(Description<ScriptAspect>& d);
+  void rule(const Event& event) override;
+  void agentConnected(AgentAspect& agent) override;
+  void agentLeaving(AgentAspect& agent) override;
+
+ protected:
+  void onLink() override;
+
+ private:
+  void script(const std::string& file, const Value& arguments);
+  void tell(std::string_view channel, const AgentAspect& agent);
+
+  Link<ISimulation> simulation_;
+};
+
+}  // namespace spark

@@ -1,0 +1,40 @@
+#pragma once
+/// \file
+/// Events at nodes whose scripts do the work.
+
+#include <string>
+#include <string_view>
+
+#include "api/phases.h"
+#include "spark/kernel.h"
+#include "spark/script.h"
+
+namespace spark::gamecontrol {
+
+/// Emits the event `channel` at `node` only and returns what the last of its scripts' handlers returned; nil if none
+/// returned anything, or if they failed. The scripts may delete the node. Simulation thread.
+inline Value askScripts(Leaf& node, std::string_view channel, Event event, const Value* data = nullptr) {
+  Value answer;
+  event.name = channel;
+  event.data = data;
+  event.answer = &answer;
+  node.kernel().events().channel(channel).emitAt(node, event);
+  return answer;
+}
+
+/// An event of the present cycle; of cycle 0 if there is no run loop.
+inline Event eventNow(const ISimulation* simulation) {
+  Event event;
+  if (!simulation) return event;
+  event.time = simulation->time();
+  event.step = simulation->step();
+  event.cycle = simulation->cycle();
+  return event;
+}
+
+/// Attaches a script file to `node`; its `...` is `arguments`. Throws Error if it cannot be loaded.
+inline void attachScript(Leaf& node, const std::string& file, const Value& arguments) {
+  node.require<IScriptServer>().attach(node, file, arguments);
+}
+
+}  // namespace spark::gamecontrol

@@ -1,0 +1,60 @@
+#include "gamecontrol/script_perceptor.h"
+
+#include <utility>
+
+#include "gamecontrol/script_event.h"
+
+namespace spark {
+
+namespace {
+constexpr std::string_view kPerceive = "perceive";
+}
+
+void ScriptPerceptor::describe(Description<ScriptPerceptor>& d) {
+  d.doc("A perceptor written in Lua: its handler of perceive returns the percept.");
+  d.implements<ISharedView>();
+  d.link(&ScriptPerceptor::simulation_, At<ISimulation>()).doc("The clock of its events.");
+  d.method("script", &ScriptPerceptor::script)
+      .parameters({"file", "arguments"})
+      .optional(1)
+      .doc("Attaches the script, which reads the arguments as `local args = ...`.");
+}
+
+void ScriptPerceptor::onLink() {
+  kernel().events().define(kPerceive, Order::parentsFirst, "At a ScriptPerceptor: returns its percept.");
+}
+
+void ScriptPerceptor::script(const std::string& file, const Value& arguments) {
+  gamecontrol::attachScript(*this, file, arguments);
+}
+
+void ScriptPerceptor::share(std::uint64_t round) {
+  if (std::exchange(round_, round) == round) return;
+  percept_ = {};
+  const Ref<ScriptPerceptor> self(this);
+  Value answer = gamecontrol::askScripts(*this, kPerceive, gamecontrol::eventNow(simulation_.get()));
+  if (!self || answer.isNil()) return;
+  if (const std::string why = whyUnwritable(answer); why.empty())
+    percept_ = std::move(answer);
+  else
+    refuse(why);
+}
+
+void ScriptPerceptor::refuse(const std::string& why) {
+  kernel().countFault();
+  if (!std::exchange(isRefused_, true))
+    kernel().log().error("{}: its script returned a percept that cannot be sent: {}. This is logged once.", path(),
+                         why);
+}
+
+void ScriptPerceptor::sense(Predicates& out, const Event&) {
+  if (percept_.isNil()) return;
+  out.open(predicateName().empty() ? messageName() : predicateName());
+  if (percept_.isList())
+    append(percept_.toList(), out);
+  else
+    append(List{percept_}, out);
+  out.close();
+}
+
+}  // namespace spark

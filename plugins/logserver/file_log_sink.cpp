@@ -1,0 +1,40 @@
+#include "file_log_sink.h"
+
+#include <spdlog/sinks/rotating_file_sink.h>
+
+namespace spark {
+
+void FileLogSink::describe(Description<FileLogSink>& d) {
+  d.doc("Writes the log to a file, and begins another one when it is full.");
+  d.property("file", &FileLogSink::file, &FileLogSink::setFile).doc("The file, which is continued; empty: none.");
+  d.property("maxSize", &FileLogSink::maxSize, &FileLogSink::setMaxSize)
+      .unit("bytes")
+      .range(1000, 1e12)
+      .doc("Size at which the file is renamed and another one begins.");
+  d.property("older", &FileLogSink::older, &FileLogSink::setOlder)
+      .range(0, 1000)
+      .doc("Number of renamed files that are kept: log.1.txt is the latest of log.txt.");
+}
+
+std::shared_ptr<spdlog::logger> FileLogSink::open() {
+  if (file_.empty()) return nullptr;
+  return inThread(std::make_shared<spdlog::sinks::rotating_file_sink_st>(file_, static_cast<std::size_t>(maxSize_),
+                                                                         static_cast<std::size_t>(older_)));
+}
+
+void FileLogSink::setFile(std::string file) {
+  file_ = std::move(file);
+  restart();
+}
+
+void FileLogSink::setMaxSize(std::int64_t bytes) {
+  maxSize_ = bytes;
+  restart();
+}
+
+void FileLogSink::setOlder(int files) {
+  older_ = files;
+  restart();
+}
+
+}  // namespace spark

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <spdlog/sinks/ringbuffer_sink.h>
+
+#include <vector>
+
+#include "log_sink.h"
+
+namespace spark {
+
+/// Keeps the last messages, for tools that ask later. They are no property, because everybody may read properties on
+/// the page, and the log holds the page's token.
+class MemoryLogSink : public LogSink {
+  SPARK_CLASS(MemoryLogSink, LogSink)
+ public:
+  static void describe(Description<MemoryLogSink>& d);
+
+ protected:
+  std::shared_ptr<spdlog::logger> open() override;
+
+ private:
+  int capacity() const { return capacity_; }
+  void setCapacity(int messages);
+  std::vector<std::string> tail(int count) const;
+  int capacity_ = 200;
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> sink_;
+};
+
+}  // namespace spark

@@ -1,0 +1,232 @@
+// Perceptors, effectors and control aspects that are written in Lua.
+#include <catch2/catch.hpp>
+
+#include "arena.h"
+#include "spark/script_server.h"
+
+using namespace spark;
+using namespace spark::test;
+using Catch::Contains;
+
+namespace {
+/// Keeps a value.
+class Taker : public Node {
+  SPARK_CLASS(Taker, Node)
+ public:
+  static void describe(Description<Taker>& d) {
+    d.doc("Keeps a value.");
+    d.property("taken", &Taker::taken).doc("The value.");
+  }
+  Value taken;
+};
+
+/// An arena whose robots are built by a script when their agents connect, and one client.
+struct ScriptArena : Arena {
+  Client client;
+  Leaf& rule;
+  explicit ScriptArena(const std::string& robot) : client(Arena::client()), rule(makeRule()) {
+    script(rule, "on('agentConnected', function(self, event) local agent = get(event.data) " + robot + " end)");
+    kernel.registerClass<Taker>();
+    client.send("(hello)");
+    until([this] { return Arena::logged(" joins."); });
+  }
+  void script(Leaf& node, const std::string& text) { scripts(kernel).attachText(node, text, "test", true); }
+  /// The client's next message in the cycle after the next one.
+  std::string percepts() {
+    cycle();
+    client.drain();
+    cycle();
+    return client.receive().value_or("");
+  }
+  void act(const std::string& actions) {
+    client.send(actions);
+    client.arrive();
+    cycle();
+  }
+  /// How often the log holds a text.
+  int logged(const std::string& text) const {
+    int n = 0;
+    for (auto at = host.text.find(text); at != std::string::npos; at = host.text.find(text, at + 1)) ++n;
+    return n;
+  }
+
+ private:
+  Leaf& makeRule() { return kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule"); }
+};
+}  // namespace
+
+TEST_CASE("what the script of a ScriptPerceptor returns is its percept") {
+  const auto percept = [](const std::string& returned) {
+    ScriptArena a("agent:new('ScriptPerceptor', 'eye'):on('perceive', function(self, event) return " + returned +
+                  " end)");
+    return a.percepts();
+  };
+  CHECK(percept("1.5") == "(eye 1.50)");
+  CHECK(percept("{1, 'two', true}") == "(eye 1 two true)");
+  CHECK(percept("{distance = 1.5, bearing = 30}") == "(eye (bearing 30) (distance 1.50))");
+  CHECK(percept("{{'pol', 1, 2, 3}, {'pol', 4, 5, 6}}") == "(eye (pol 1 2 3) (pol 4 5 6))");
+  CHECK(percept("{}") == "(eye )");
+  CHECK(percept("event.name .. event.cycle") == "(eye perceive0)");
+}
+
+TEST_CASE("a ScriptPerceptor whose script returns nil senses nothing, and other names and intervals count") {
+  ScriptArena a(R"(
+    agent:new('TestClock', 'clock')
+    calls = 0
+    agent:new('ScriptPerceptor', 'quiet'):on('perceive', function() end)
+    local eye = agent:new('ScriptPerceptor', 'eye')
+    eye.predicateName, eye.interval = 'SEE', 3
+    eye:on('perceive', function() calls = calls + 1 return calls end))");
+  std::string all;
+  for (int i = 0; i < 9; ++i) {
+    a.cycle();
+    for (const std::string& message : a.client.drain()) all += message;
+  }
+  CHECK_THAT(all, Contains("(time (now") && Contains("(SEE 2)") && !Contains("(SEE 4)") && !Contains("quiet") &&
+                      !Contains("eye"));
+}
+
+TEST_CASE("a percept that cannot be sent is logged once and left out") {
+  for (const char* returned : {"'two words'", "{'a', {1, '(b'}}", "0/0", "{''}"}) {
+    ScriptArena a(
+        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
+        std::string(returned) + " end)");
+    INFO(returned);
+    CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+    CHECK(a.logged("/usr/scene/AgentAspect1/eye: its script returned a percept that cannot be sent: expected") == 1);
+    CHECK(a.kernel.faults() > 1);
+  }
+}
+
+TEST_CASE("an error in the script of a ScriptPerceptor is one line with file and line, and the others sense") {
+  ScriptArena a(
+      "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function()\n error('no') "
+      "end)");
+  CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+  CHECK(a.logged("handler of 'perceive' at /usr/scene/AgentAspect1/eye failed: test:2: no") == 1);
+}
+
+TEST_CASE("a ScriptPerceptor that returns no value is an error with the place of the function") {
+  ScriptArena a("agent:new('ScriptPerceptor', 'eye'):on('perceive',\n function() return print end)");
+  a.cycle();
+  CHECK(
+      a.logged("failed: test:2: what this function returned: expected a value (nil, boolean, number, string, table or "
+               "node), found a function") == 1);
+}
+
+TEST_CASE("a ScriptPerceptor may delete itself, other perceptors, its robot and other agents while it senses") {
+  for (const char* victim : {"self", "agent:find('clock')", "agent:find('other')", "agent"}) {
+    ScriptArena a(
+        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function(self) delete(" +
+        std::string(victim) + ") return 1 end) agent:new('ScriptPerceptor', 'other')");
+    INFO(victim);
+    for (int i = 0; i < 3; ++i) a.cycle();
+    CHECK(a.agents() == (std::string(victim) == "agent" ? 0 : 1));
+  }
+  ScriptArena a("agent:new('ScriptPerceptor', 'eye'):on('perceive', function() delete('/sys/server/gamecontrol') end)");
+  a.cycle();
+  CHECK(a.logged("it is in use: agents sense just now") == 1);
+}
+
+TEST_CASE("the script of a ScriptEffector gets its actions as tables") {
+  ScriptArena a(R"(new('Taker', '/usr/taker')
+    agent:new('ScriptEffector', 'push'):on('perform', function(self, event) get('/usr/taker').taken = event.data end))");
+  const auto taken = [&](const std::string& action) {
+    a.act(action);
+    return a.kernel.root().require<Taker>("/usr/taker").taken;
+  };
+  CHECK(taken("(push 1 -0.5 fast \"12\" (to 3 goal))") ==
+        Value(List{"push", 1.0, -0.5, "fast", "12", List{"to", 3.0, "goal"}}));
+  CHECK(taken("(push)") == Value(List{"push"}));
+  CHECK_FALSE(a.Arena::logged("push:"));
+}
+
+TEST_CASE("a text that the script of a ScriptEffector returns is a mistake of the agent") {
+  ScriptArena a(R"(agent:new('ScriptEffector', 'push'):on('perform', function(self, event)
+    if type(event.data[2]) ~= 'number' then return 'expected a number, found ' .. tostring(event.data[2]) end
+  end))");
+  a.act("(push 3)");
+  CHECK_FALSE(a.Arena::logged("push:"));
+  a.act("(push hard)");
+  a.act("(push hard)");
+  CHECK(a.logged("agent 1 (" + a.client.name() + "): push: expected a number, found hard") == 1);
+}
+
+TEST_CASE("an error in the script of a ScriptEffector is logged, and the other actions are executed") {
+  ScriptArena a(R"(agent:new('TestMotor', 'he1')
+    agent:new('ScriptEffector', 'push'):on('perform', function(self, event)
+      error('no') end))");
+  a.act("(push 3)(he1 4)");
+  CHECK(a.logged("handler of 'perform' at /usr/scene/AgentAspect1/push failed: test:3: no") == 1);
+  CHECK(actionLog() == std::vector<std::string>{"1 he1 4"});
+}
+
+TEST_CASE("a ScriptEffector may delete itself while it acts") {
+  ScriptArena a("agent:new('ScriptEffector', 'push'):on('perform', function(self) delete(self) return 'gone' end)");
+  a.act("(push 1)(push 2)");
+  CHECK(a.agents() == 1);
+}
+
+TEST_CASE("a ScriptBehavior may delete itself while it starts or thinks, and its agent leaves") {
+  for (const char* channel : {"start", "think"}) {
+    Arena a;
+    Leaf& behavior = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
+    scripts(a.kernel).attachText(behavior, R"lua(
+      on("start", function(self) self.actions = "(scene robot)" end)
+      on(")lua" + std::string(channel) + R"lua(", function(self) self.actions = "(he1 1)" delete(self) end))lua",
+                                 "test", true);
+    for (int i = 0; i < 6; ++i) a.cycle();
+    CHECK(a.agents() == 0);
+    CHECK(actionLog().empty());
+  }
+}
+
+TEST_CASE("the script of a ScriptAspect judges, and knows who comes and goes") {
+  Arena a;
+  Leaf& rule = a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule");
+  scripts(a.kernel).attachText(rule, R"lua(
+    new("Node", "/usr/log")
+    local function note(self, event) new("Node", "/usr/log/" .. event.name .. "_" .. tostring(event.data):gsub("/", "_")) end
+    for _, channel in ipairs{"judge", "agentConnected", "agentLeaving"} do on(channel, note) end
+  )lua",
+                               "test", true);
+  std::vector<std::string> seen;
+  const auto notes = [&] {
+    seen.clear();
+    for (const auto& child : a.kernel.root().require<Node>("/usr/log").children()) seen.push_back(child->name());
+    a.kernel.root().require<Node>("/usr/log").removeChildren();
+    return seen;
+  };
+  using Names = std::vector<std::string>;
+  const auto judge = [&] { a.kernel.events().channel("rule").emit({"rule"}); };
+  judge();
+  CHECK(notes() == Names{"judge_nil"});
+  setProperty(rule, "enabled", false);
+  judge();
+  CHECK(notes() == Names{});
+  {
+    Client c = a.client();
+    a.until([&] { return a.agents() == 1; });
+    CHECK(notes() == Names{"agentConnected__usr_scene_AgentAspect1"});
+  }
+  a.until([&] { return a.agents() == 0; });
+  CHECK(notes() == Names{"agentLeaving__usr_scene_AgentAspect1"});
+}
+
+TEST_CASE("a ScriptAspect may change the rules and refuse the agent that connects") {
+  Arena a;
+  Leaf& rule = a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule");
+  a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/second");
+  scripts(a.kernel).attachText(rule, R"lua(
+    on("agentConnected", function(self, event)
+      delete("/sys/server/gamecontrol/second")
+      for i = 1, 50 do new("ScriptAspect", "/sys/server/gamecontrol/more" .. i) end
+      delete(event.data)
+    end)
+  )lua",
+                               "test", true);
+  Client c = a.client();
+  a.until([&] { return a.logged(" leaves."); });
+  CHECK(c.closed());
+  CHECK(a.kernel.faults() == 0);
+}
