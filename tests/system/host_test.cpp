@@ -265,6 +265,20 @@ TEST_CASE("sparkctl shows and changes a running simulation") {
   REQUIRE(p.wait() == 0);
 }
 
+TEST_CASE("sparkctl switches offside off and on in a running match") {
+  Process p(host({"--config", "soccer.lua", "--set", "team=Red Blue", "--set", "players=2", "--set", "offside=true"}));
+  p.line();
+  const auto ctl = controlOf(p);
+  const std::string rule = "/sys/server/gamecontrol/OffsideAspect.enabled";
+  CHECK_THAT(ctl({"get", rule}).out, Contains("enabled = true"));
+  CHECK(ctl({"set", rule, "false"}).code == 0);
+  CHECK_THAT(ctl({"get", rule}).out, Contains("enabled = false"));
+  CHECK(ctl({"set", rule, "true"}).code == 0);
+  CHECK_THAT(ctl({"get", rule}).out, Contains("enabled = true"));
+  CHECK(ctl({"call", "/sys/server/simulation.stop"}).code == 0);
+  CHECK(p.wait() == 0);
+}
+
 TEST_CASE("sparkctl loads and unloads plugins of a running simulation") {
   TemporaryFolder folder;
   Process p(host({"--config", folder.write("small.lua", kSmall)}));

@@ -1,4 +1,4 @@
-"""The milestone `senses`: rays, occlusion, distance sensors."""
+"""The milestone `senses`: rays, occlusion, distance sensors, models of imperfect sensors, pictures of cameras."""
 import json
 
 from acceptance.common import BIN, PASS, FAIL, OPEN, run, say, tests
@@ -32,8 +32,13 @@ def distances():
     return tests("sensors")
 
 
+def modifiers():
+    return tests("modifiers")
+
+
 POINTS = {
     "1": ("22 x 64 rays within 1 ms", rays),
     "2": ("occlusion as a search without rays finds it, in 10,000 random scenes", occlusion),
     "3": ("distance sensors meet the geometry of the scene", distances),
+    "4": ("each model of an imperfect sensor has its statistics", modifiers),
 }
