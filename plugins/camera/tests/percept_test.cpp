@@ -147,5 +147,7 @@ TEST_CASE("the plugin can be unloaded after pictures were taken") {
   CHECK(isMapped(file));
   studio.camera->parent()->remove(*studio.camera);
   studio.kernel.plugins().unload("camera");
+#if !defined(__SANITIZE_THREAD__)  // which maps the files whose functions it has named
   CHECK_FALSE(isMapped(file));
+#endif
 }
