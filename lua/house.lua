@@ -185,6 +185,14 @@ function drawing()
   return server
 end
 
+--- Pictures for the cameras of robots (ImagePerceptor), which sense nothing without it. They are drawn on the processor.
+--- Call it after materials(), if at all: meshes that only viewers have then get colours.
+function camera()
+  plugin "camera"
+  if meshColours and get("/sys/server/material") then meshColours(get("/sys/server/material")) end
+  return new("CameraServer", "/sys/server/camera")
+end
+
 --- The status of a game: Status.score = {2, 1}. The host's status line, the columns of a batch and the page show it.
 --- `values`: initial values; playMode (text), score (numbers) and teams (names) have a meaning, all others are shown by
 --- their names.

@@ -34,6 +34,19 @@ local function declareMeshes(server)
   for _, part in ipairs { "lupperarm4", "rupperarm4", "lshank4", "rshank4" } do mesh(part, "matTeam", "naowhite") end
 end
 
+-- Colours of the materials of these meshes, for cameras: their textures belong to the viewers, too.
+local ofMeshes = {
+  ["None_rcs-naofield.png"] = { 0.1, 0.5, 0.1 }, ["soccerball_rcs-soccerball.png"] = { 1, 1, 1 },
+  naogoalnet = { 0.8, 0.8, 0.8 }, yellow = { 1, 1, 0 }, ["sky-blue"] = { 0, 0.75, 1 },
+  naoblack = { 0.1, 0.1, 0.1 }, naogrey = { 0.5, 0.5, 0.5 }, naowhite = { 1, 1, 1 },
+  matType0 = { 0.9, 0.9, 0.9 }, matType1 = { 0.9, 0.9, 0.9 }, matType2 = { 0.9, 0.9, 0.9 }, matType3 = { 0.9, 0.9, 0.9 },
+}
+
+--- Defines those colours in the material server.
+function meshColours(server)
+  for name, c in pairs(ofMeshes) do server:define(name, c[1], c[2], c[3], 1) end
+end
+
 --- Material server, with the usual materials and the materials of the usual meshes.
 function materials()
   local server = new("MaterialServer", "/sys/server/material")

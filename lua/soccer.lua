@@ -22,6 +22,7 @@ local compat  = compatOption(league.compat)
 local offside = option{ name = "offside", default = false, doc = "Offside is judged; the installed base has no such rule." }
 
 local engine  = engineOption(league.solver)
+local cameras = option{ name = "cameras", default = false, doc = "Cameras of robots (ImagePerceptor) have pictures." }
 local exact   = option{ name = "exactReplay", default = engine == "OdeEngine",
                         doc = "Physics repeats recorded sessions of the installed base to the last digit (OdeEngine)." }
 
@@ -38,6 +39,7 @@ control()
 drawing()
 plugin "sensors"
 plugin "effectors"
+if cameras then camera() end
 
 -- the match
 naoVariables()

@@ -4,12 +4,19 @@ namespace spark {
 
 void MaterialSolid::describe(Description<MaterialSolid>& d) {
   d.doc("A material of one colour, for viewers.");
+  d.implements<IMaterial>();
   d.property("ambient", &MaterialSolid::ambient_).doc("Colour in ambient light.");
   d.property("diffuse", &MaterialSolid::diffuse_).doc("Colour in direct light.");
   d.property("specular", &MaterialSolid::specular_).doc("Colour of its highlights.");
   d.property("emission", &MaterialSolid::emission_).doc("Colour of emitted light.");
   d.property("shininess", &MaterialSolid::shininess_).unit("1").range(0, 128).doc("Sharpness of highlights.");
   d.property("depthCheck", &MaterialSolid::depthCheck_).doc("Hidden by objects in front of it.");
+}
+
+void Material2DTexture::describe(Description<Material2DTexture>& d) {
+  d.doc("A material with a picture on it, for viewers.");
+  d.property("diffuseTexture", &Material2DTexture::texture_)
+      .doc("Resource name of the picture, a PNG file that multiplies the colours; empty: none.");
 }
 
 void MaterialServer::describe(Description<MaterialServer>& d) {

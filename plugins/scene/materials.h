@@ -4,20 +4,33 @@
 
 #include <set>
 
+#include "api/appearance.h"
 #include "api/scene.h"
 
 namespace spark {
 
 /// A material of one colour, for viewers.
-class MaterialSolid : public Leaf {
+class MaterialSolid : public Leaf, public IMaterial {
   SPARK_CLASS(MaterialSolid, Leaf)
  public:
   static void describe(Description<MaterialSolid>& d);
+  Look look() const override { return {ambient_, diffuse_, specular_, emission_, shininess_}; }
+  const std::string& texture() const override { return texture_; }
+
+ protected:
+  std::string texture_;
 
  private:
   Color ambient_{0.2f, 0.2f, 0.2f, 1}, diffuse_{1, 1, 1, 1}, specular_{0, 0, 0, 1}, emission_{0, 0, 0, 1};
   double shininess_ = 128;
   bool depthCheck_ = true;
+};
+
+/// A material with a picture on it, for viewers.
+class Material2DTexture : public MaterialSolid {
+  SPARK_CLASS(Material2DTexture, MaterialSolid)
+ public:
+  static void describe(Description<Material2DTexture>& d);
 };
 
 /// Holds materials by name, as children. At /sys/server/material.

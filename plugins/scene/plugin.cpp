@@ -9,5 +9,5 @@
 SPARK_PLUGIN("scene", "1.0", "The scene server, transforms, what viewers see, materials, script variables.",
              spark::SceneNode, spark::Transform, spark::Scene, spark::SceneServer, spark::Light, spark::Camera,
              spark::Axis, spark::RenderNode, spark::StaticMesh, spark::SingleMatNode, spark::Box, spark::Sphere,
-             spark::Capsule, spark::Cylinder, spark::MaterialSolid, spark::MaterialServer, spark::Variables,
-             spark::StatusVariables)
+             spark::Capsule, spark::Cylinder, spark::MaterialSolid, spark::Material2DTexture, spark::MaterialServer,
+             spark::Variables, spark::StatusVariables)

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "api/appearance.h"
 #include "api/match.h"
 #include "api/scene.h"
 
@@ -65,11 +66,12 @@ class GoalPost : public ObjectState, public IEchoTarget {
 };
 
 /// A straight line on the field.
-class Line : public SoccerNode {
+class Line : public SoccerNode, public IPaintedLine {
   SPARK_CLASS(Line, SoccerNode)
  public:
   static void describe(Description<Line>& d) {
     d.doc("A straight line on the field, seen by cone vision.");
+    d.implements<IPaintedLine>();
     d.property("beginPoint", &Line::begin_).unit("m").doc("One end, in the frame of the transform above.");
     d.property("endPoint", &Line::end_).unit("m").doc("The other end.");
   }
@@ -77,6 +79,9 @@ class Line : public SoccerNode {
   const Vec3f& begin() const { return begin_; }
   /// The other end, in the frame of the transform above [m].
   const Vec3f& end() const { return end_; }
+  Leaf& leaf() override { return *this; }
+  std::array<Vec3f, 2> ends() const override { return {begin_, end_}; }
+  float width() const override { return 0.05f; }
 
  private:
   Vec3f begin_ = Vec3f::Zero(), end_ = Vec3f::Zero();
