@@ -5,11 +5,13 @@
 namespace spark {
 
 namespace {
-constexpr std::string_view kJudge = "judge", kConnected = "agentConnected", kLeaving = "agentLeaving";
+constexpr std::string_view kJudge = "judge", kConnected = "agentConnected", kLeaving = "agentLeaving",
+                           kRequest = "request";
 }
 
 void ScriptAspect::describe(Description<ScriptAspect>& d) {
-  d.doc("A rule written in Lua: its handlers of judge, agentConnected and agentLeaving.");
+  d.doc("A rule written in Lua: its handlers of judge, agentConnected, agentLeaving and request.");
+  d.implements<IAgentJudge>();
   d.link(&ScriptAspect::simulation_, At<ISimulation>()).doc("The clock of its events.");
   d.method("script", &ScriptAspect::script)
       .parameters({"file", "arguments"})
@@ -22,6 +24,8 @@ void ScriptAspect::onLink() {
   events.define(kJudge, Order::parentsFirst, "At a ScriptAspect: applies the rule, once in each cycle.");
   events.define(kConnected, Order::parentsFirst, "At a ScriptAspect: an agent has come; data: the path of its aspect.");
   events.define(kLeaving, Order::parentsFirst, "At a ScriptAspect: an agent goes; data: the path of its aspect.");
+  events.define(kRequest, Order::parentsFirst,
+                "At a ScriptAspect: an agent asks for a perceptor, an effector or a scene file; returns why not.");
 }
 
 void ScriptAspect::script(const std::string& file, const Value& arguments) {
@@ -31,6 +35,13 @@ void ScriptAspect::script(const std::string& file, const Value& arguments) {
 void ScriptAspect::rule(const Event& event) { gamecontrol::askScripts(*this, kJudge, event); }
 void ScriptAspect::agentConnected(AgentAspect& agent) { tell(kConnected, agent); }
 void ScriptAspect::agentLeaving(AgentAspect& agent) { tell(kLeaving, agent); }
+
+std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& request) {
+  constexpr const char* kKinds[] = {"perceptor", "effector", "scene"};
+  const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name});
+  const Value answer = gamecontrol::askScripts(*this, kRequest, gamecontrol::eventNow(simulation_.get()), &data);
+  return answer.isNil() ? std::string() : answer.plain();
+}
 
 void ScriptAspect::tell(std::string_view channel, const AgentAspect& agent) {
   const Value data = agent.path();

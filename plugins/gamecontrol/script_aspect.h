@@ -8,14 +8,17 @@
 namespace spark {
 
 /// Its script's handlers are the rule: `judge` runs once in each cycle while the aspect is enabled, `agentConnected`
-/// and `agentLeaving` when an agent comes and goes. Their `event.data` is the path of the agent's aspect.
-class ScriptAspect : public ControlAspect {
+/// and `agentLeaving` when an agent comes and goes. Their `event.data` is the path of the agent's aspect. `request`
+/// runs when an agent asks for a perceptor, an effector or a scene file; `event.data` is { path of the agent's aspect,
+/// "perceptor", class, name }, and a text that it returns refuses the request.
+class ScriptAspect : public ControlAspect, public IAgentJudge {
   SPARK_CLASS(ScriptAspect, ControlAspect)
  public:
   static void describe(Description<ScriptAspect>& d);
   void rule(const Event& event) override;
   void agentConnected(AgentAspect& agent) override;
   void agentLeaving(AgentAspect& agent) override;
+  std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override;
 
  protected:
   void onLink() override;

@@ -1,4 +1,5 @@
 // Objects that become agents, and objects again.
+#include "api/agents.h"
 #include "stadium.h"
 
 using namespace spark;

@@ -1,4 +1,5 @@
 // Agents that ask for perceptors and effectors while they run, and rules that refuse.
+#include "spark/script_server.h"
 #include "stadium.h"
 
 using namespace spark;
@@ -54,21 +55,23 @@ TEST_CASE("Requests that cannot be granted are answered with what was expected")
     const std::size_t at = heard.find("(why ");
     return at == std::string::npos ? heard : heard.substr(at, heard.find("))", at) - at);
   };
-  CHECK(has(why("(request (perceptor Gps)(name g))"), "(why expected the class of a perceptor, such as GPS, found Gps"));
+  CHECK(
+      has(why("(request (perceptor Gps)(name g))"), "(why expected the class of a perceptor, such as GPS, found Gps"));
   CHECK(has(why("(request (perceptor RigidBody)(name g))"), "found RigidBody"));
   CHECK(has(why("(request (effector GPS)(name g))"), "(why expected the class of an effector"));
   CHECK(has(why("(request (perceptor Perceptor)(name g))"), "found Perceptor"));
   CHECK(has(why("(request (perceptor GPS)(name g)(at nowhere))"), "there is no node nowhere in this robot"));
   CHECK(has(why("(request (perceptor GPS)(name g)(at ../../../sys/server))"), "there is no node"));
   CHECK(has(why("(request (perceptor GPS)(name a/b))"), "(why "));
-  CHECK(has(why("(request (scene rsg/soccer/field.rsg))"), "expected a file below rsg/agent/, found rsg/soccer/field.rsg"));
+  CHECK(has(why("(request (scene rsg/soccer/field.rsg))"),
+            "expected a file below rsg/agent/, found rsg/soccer/field.rsg"));
   CHECK(has(why("(request (scene rsg/agent/../soccer/field.rsg))"), "expected a file below"));
   CHECK(has(why("(request (scene rsg/agent/nothing.rsg))"), "(why "));
   m.after("(request (perceptor GPS)(name g))");
   CHECK(has(why("(request (perceptor GPS)(name g))"), "there is a node g already"));
   // Malformed ones are mistakes, which the log has.
-  for (const char* wrong : {"(request)", "(request (perceptor))", "(request (perceptor GPS))", "(request perceptor GPS)",
-                            "(request (perceptor (GPS))(name x))"})
+  for (const char* wrong : {"(request)", "(request (perceptor))", "(request (perceptor GPS))",
+                            "(request perceptor GPS)", "(request (perceptor (GPS))(name x))"})
     CHECK_FALSE(has(m.after(wrong), "granted"));
   // No more than its share.
   std::string last;
@@ -88,6 +91,23 @@ TEST_CASE("A rule refuses an agent's request the first time and disqualifies the
   CHECK_FALSE(m.player.client.ended());
   m.after("(request (perceptor GPS)(name gps2))");
   CHECK(m.player.client.ended());
+}
+
+TEST_CASE("A rule in Lua refuses requests with a reason") {
+  AskingMatch m;
+  Leaf& rule = m.addRule("ScriptAspect");
+  scripts(rule.kernel())
+      .attachText(rule, R"lua(
+    on("request", function(self, event)
+      local agent, kind, class, name = table.unpack(event.data)
+      if class == "GPS" then return "no " .. kind .. " " .. class .. " for " .. name end
+    end)
+  )lua",
+                  "test", true);
+  const std::string heard = m.after("(request (perceptor GPS)(name gps2))");
+  INFO(heard);
+  CHECK(has(heard, "(refused (name gps2) (why no perceptor GPS for gps2))"));
+  CHECK(has(m.after("(request (perceptor GyroRatePerceptor)(name g))"), "(granted (name g))"));
 }
 
 TEST_CASE("A rule that is disabled refuses nothing") {
