@@ -71,7 +71,9 @@ void RequestPerceptor::sense(Predicates& out, const Event&) {
 void RequestEffector::describe(Description<RequestEffector>& d) {
   using R = RequestEffector;
   d.doc("(request (perceptor <class>) (name <name>) (at <node>)): gives the agent a perceptor or an effector.");
-  d.property("maxParts", &R::maxParts_).range(0, 1000).doc("Number of requests that are granted; further ones are not.");
+  d.property("maxParts", &R::maxParts_)
+      .range(0, 1000)
+      .doc("Number of requests that are granted; further ones are not.");
   d.property("folder", &R::folder_).doc("Scene files that are asked for are below this folder.");
   d.on<&R::prepare>(phase::kPrepare);
 }
@@ -119,8 +121,8 @@ void RequestEffector::prepare(const Event&) {
 
 Node* RequestEffector::parentFor(const Request& request, AgentAspect& root) const {
   if (request.at.empty()) return &root;
-  Node* const found = request.at.find('/') == std::string::npos ? findBelow(root, request.at)
-                                                                : root.find<Node>(request.at);
+  Node* const found =
+      request.at.find('/') == std::string::npos ? findBelow(root, request.at) : root.find<Node>(request.at);
   return found && isBelow(*found, root) ? found : nullptr;
 }
 
@@ -145,7 +147,8 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   // The judges, then the tree.
   auto* const control = find<IGameControl>(IGameControl::kPath);
   if (control)
-    if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent}); !why.empty())
+    if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent});
+        !why.empty())
       return why;
   if (request.kind == Kind::scene) {
     const std::size_t before = parent->children().size();
