@@ -29,7 +29,7 @@ class RequestAspect : public ControlAspect, public IAgentJudge {
   void agentLeaving(AgentAspect& agent) override { refused_.erase(agent.number()); }
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override {
     if (std::find(allowed_.begin(), allowed_.end(), request.type) != allowed_.end()) return {};
-    const std::string why = "the rules do not allow " + std::string(request.type);
+    std::string why = "the rules do not allow " + std::string(request.type);
     if (tolerance_ >= 0 && ++refused_[agent.number()] > tolerance_)
       if (auto* control = find<IGameControl>(IGameControl::kPath))
         control->disqualify(agent, "it asked again for what the rules do not allow, " + std::string(request.type));
