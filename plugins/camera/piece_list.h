@@ -8,9 +8,11 @@
 /// fields of scenes whose meshes only viewers have can be seen, too. Painted lines (IPaintedLine) are flat boxes.
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "api/physics.h"
