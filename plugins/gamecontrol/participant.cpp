@@ -20,8 +20,8 @@ Participant::Participant(IConnection& connection)
 Participant::Participant(Behavior& behavior)
     : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
 
-void Participant::join(int number, AgentAspect& aspect, bool object) {
-  isObject_ = object;
+void Participant::join(int number, AgentAspect& aspect, Given given) {
+  given_ = given;
   number_ = number;
   aspect_ = &aspect;
   joinedAt_ = Clock::now();
@@ -185,9 +185,8 @@ bool Participant::resolveRobot() {
     return false;
   }
   const std::size_t effectors = effectors_.rebuild(*root), perceptors = percepts_.rebuild(*root);
-  // Without a robot it has the scene effector, unless it is an object of the scene.
-  const bool first = !hasRobot_ && (perceptors > 0 || effectors > (isObject_ ? 0 : 1));
-  blind_ = perceptors == 0;
+  const bool first = !hasRobot_ && (perceptors > given_.perceptors || effectors > given_.effectors);
+  blind_ = perceptors <= given_.perceptors;
   hasRobot_ |= first;
   return first;
 }
@@ -225,7 +224,7 @@ void Participant::think(AgentLog& log, std::int64_t cycle) {
   try {
     behavior()->think(percepts(), actions);
   } catch (const std::exception& fault) {
-    behavior()->kernel().countFault();
+    if (behavior()) behavior()->kernel().countFault();  // it may have removed itself
     warn(log, cycle, fmt::format("it threw: {}", fault.what()));
   }
   if (actions.isUnbalanced() && actions.balance() != 0)

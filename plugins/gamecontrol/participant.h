@@ -69,9 +69,13 @@ class Participant {
   /// The connection ended.
   void disconnect() { connection_ = nullptr; }
 
-  /// Assigns number and aspect. A behavior adds its first actions. `object`: the aspect was made for an object of the
-  /// scene, and the agent needs no robot.
-  void join(int number, AgentAspect& aspect, bool object = false);
+  /// What game control gives an agent when it joins.
+  struct Given {
+    std::size_t effectors = 0, perceptors = 0;
+  };
+  /// Assigns number and aspect. A behavior adds its first actions. The agent has a robot as soon as it has more than
+  /// what is given.
+  void join(int number, AgentAspect& aspect, Given given);
   /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
   /// True while it has sent messages but its first percepts may be under way.
@@ -192,8 +196,8 @@ class Participant {
   Ref<IParser> parser_;
   const bool inside_;
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false;
-  bool isObject_ = false;  ///< its aspect was made for an object of the scene
-  bool blind_ = false;     ///< it has no perceptors: its behavior is called with empty percepts
+  bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
+  Given given_;
   LockstepRecord lockstep_;
   ActionQueue actions_;
   EffectorTable effectors_;

@@ -79,6 +79,25 @@ TEST_CASE("Requests that cannot be granted are answered with what was expected")
   CHECK(has(m.after("(request (perceptor GPS)(name last))"), "32 requests were granted, no more are"));
 }
 
+TEST_CASE("Requests cannot undo what limits an agent, and names are plain words") {
+  AskingMatch m;
+  for (const char* given :
+       {"(request (effector SceneEffector)(name x))", "(request (effector RequestEffector)(name x))",
+        "(request (perceptor RequestPerceptor)(name x))"})
+    CHECK(has(m.after(given), "(refused (name x) (why expected the class of"));
+  for (const char* name : {"\"a b\"", "\"a\nb\"", "a\xff", "\xc3\xa9", "\";\""})
+    CHECK_FALSE(has(m.after("(request (perceptor GPS)(name " + std::string(name) + "))"), "(granted"));
+}
+
+TEST_CASE("Being able to ask is no robot") {
+  Stadium s({{"/sys/server/gamecontrol.requests", true}, {"/sys/server/gamecontrol.idleLimit", 1e-9}});
+  const auto seen = [&] { return s.get("/sys/server/gamecontrol", "agentsSeen").toInteger(); };
+  Player& idle = s.connect();
+  s.run(3);
+  CHECK(seen() == 0);
+  CHECK(idle.client.ended());
+}
+
 TEST_CASE("A rule refuses an agent's request the first time and disqualifies the agent the second time") {
   AskingMatch m;
   Leaf& rule = m.addRule("RequestAspect");
