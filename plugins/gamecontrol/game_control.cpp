@@ -194,14 +194,19 @@ void GameControl::findJudges() {
   activeJudges_.clear();
   for (const Found<IAgentJudge>& judge : judges_) {
     const auto rule = judge.leaf->as<ControlAspect>();
-    if (!rule || rule->enabled()) activeJudges_.push_back(judge.object);
+    if (!rule || rule->enabled()) activeJudges_.push_back({judge.leaf, judge.object});
   }
 }
 
 std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   findJudges();
-  for (IAgentJudge* judge : activeJudges_)
-    if (std::string why = judge->judgeRequest(agent, request); !why.empty()) return why;
+  const Ref<AgentAspect> asking(&agent);
+  const Ref<Node> parent(&request.parent);
+  for (const gamecontrol::Judge& j : activeJudges_) {
+    if (!j.leaf) continue;
+    if (std::string why = j.judge->judgeRequest(agent, request); !why.empty()) return why;
+    if (!asking || !parent) return "where it was to be is gone";
+  }
   return {};
 }
 

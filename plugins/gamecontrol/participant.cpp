@@ -100,7 +100,7 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+void Participant::execute(AgentLog& log, const Event& event, std::span<const Judge> judges) {
   const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
@@ -133,7 +133,7 @@ void Participant::execute(AgentLog& log, const Event& event, std::span<IAgentJud
 }
 
 /// Effectors with modifiers act after all others. Also without an action: an earlier one may be due now.
-void Participant::executeModified(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+void Participant::executeModified(AgentLog& log, const Event& event, std::span<const Judge> judges) {
   for (const auto& m : effectors_.modified()) {
     NowRunning now("act");
     if (const Effector* effector = m->effector.get()) try {
@@ -155,12 +155,14 @@ void Participant::executeModified(AgentLog& log, const Event& event, std::span<I
 }
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
-                                std::span<IAgentJudge* const> judges) {
+                                std::span<const Judge> judges) {
   try {
-    AgentAspect* const agent = aspect();
-    for (IAgentJudge* judge : judges)
-      if (const std::string why = agent ? judge->judgeAction(*agent, effector, action) : std::string(); !why.empty())
-        return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
+    const Ref<Effector> judged(judges.empty() ? nullptr : &effector);
+    for (const Judge& j : judges)
+      if (AgentAspect* const agent = j.leaf && judged ? aspect() : nullptr)
+        if (const std::string why = j.judge->judgeAction(*agent, effector, action); !why.empty())
+          return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
+    if (!judges.empty() && !judged) return;  // a judge removed it
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();

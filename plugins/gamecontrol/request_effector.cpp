@@ -121,7 +121,8 @@ void RequestEffector::prepare(const Event&) {
   const std::vector<Request> requests = std::exchange(pending_, {});
   if (!nearest) return;
   AgentAspect& root = nearest->outermost();
-  auto* const answers = find<RequestPerceptor>(fmt::format("../{}", kAnswers));
+  const Ref<RequestPerceptor> answers(find<RequestPerceptor>(fmt::format("../{}", kAnswers)));
+  const Ref<RequestEffector> self(this);  // a judge may be a script that removes the agent
   for (const Request& request : requests) {
     std::string why;
     try {
@@ -129,6 +130,7 @@ void RequestEffector::prepare(const Event&) {
     } catch (const std::exception& e) {
       why = e.what();
     }
+    if (!self) return;
     if (why.empty()) ++parts_;
     if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
   }
