@@ -44,8 +44,8 @@ class AgentAspect : public Transform {
   int number() const { return number_; }
   /// Called once by game control.
   void setNumber(int n) { number_ = n; }
-  /// The agent's own part of the scene: the outermost aspect, or the object that it makes an agent, which is the nearest
-  /// transform above it.
+  /// The agent's own part of the scene: the outermost aspect, or the object that it makes an agent, which is the
+  /// nearest transform above it.
   Node& object() {
     AgentAspect& top = outermost();
     Transform* const above = top.transform();
@@ -253,7 +253,8 @@ class IGameControl {
   virtual const std::vector<AgentAspect*>& agents() const = 0;
   /// Removes the agent at the start of the next act phase; `close`: closes its connection, too.
   virtual void removeAgent(AgentAspect& agent, bool close) = 0;
-  /// Removes the agent like removeAgent(), closes its connection, and logs why: one line without a full stop at its end.
+  /// Removes the agent like removeAgent(), closes its connection, and logs why: one line without a full stop at its
+  /// end.
   virtual void disqualify(AgentAspect& agent, std::string_view why) = 0;
   /// Asks all judges (IAgentJudge) about a request. Returns "" if nobody refuses it, else the reason.
   virtual std::string judgeRequest(AgentAspect& agent, const PartRequest& request) = 0;

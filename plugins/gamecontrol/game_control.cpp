@@ -182,9 +182,9 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
 }
 
 void GameControl::disqualify(AgentAspect& agent, std::string_view why) {
-  logInfo(fmt::format("Agent {} is disqualified: {}.", agent.number(), why));
   for (const auto& p : participants_) {
-    if (p->aspect() != &agent) continue;
+    if (p->aspect() != &agent || p->leaving()) continue;
+    logInfo(fmt::format("Agent {} is disqualified: {}.", agent.number(), why));
     if (p->connection()) p->connection()->close(fmt::format("it was disqualified: {}", why));
     p->leave();
   }
@@ -194,14 +194,19 @@ void GameControl::findJudges() {
   activeJudges_.clear();
   for (const Found<IAgentJudge>& judge : judges_) {
     const auto rule = judge.leaf->as<ControlAspect>();
-    if (!rule || rule->enabled()) activeJudges_.push_back(judge.object);
+    if (!rule || rule->enabled()) activeJudges_.push_back({judge.leaf, judge.object});
   }
 }
 
 std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   findJudges();
-  for (IAgentJudge* judge : activeJudges_)
-    if (std::string why = judge->judgeRequest(agent, request); !why.empty()) return why;
+  const Ref<AgentAspect> asking(&agent);
+  const Ref<Node> parent(&request.parent);
+  for (const gamecontrol::Judge& j : activeJudges_) {
+    if (!j.leaf) continue;
+    if (std::string why = j.judge->judgeRequest(agent, request); !why.empty()) return why;
+    if (!asking || !parent) return "where it was to be is gone";
+  }
   return {};
 }
 
@@ -367,7 +372,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
   const int number = nextNumber_++;
   Participant& p = *participant;
   participants_.push_back(std::move(participant));
-  AgentAspect* aspect = ready;
+  Ref<AgentAspect> aspect(ready);
   try {
     if (!ready) {
       auto* server = kernel().root().find<ISceneServer>();
@@ -377,12 +382,15 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
         scene->setFolder(robotFolder_);
     }
     aspect->setNumber(number);
-    if (requests_) RequestEffector::addTo(*aspect);
-    p.join(number, *aspect, ready != nullptr);
+    if (requests_) RequestEffector::addTo(*aspect, robotFolder_);
+    p.join(number, *aspect, {std::size_t{!ready} + requests_, requests_});
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
     if (p.connection()) p.connection()->close("no agent could be made for it");
-    if (aspect && !ready) aspect->parent()->remove(*aspect);
+    if (aspect && ready)
+      aspect->setNumber(0);
+    else if (aspect)
+      aspect->parent()->remove(*aspect);
     participants_.pop_back();
     return false;
   }

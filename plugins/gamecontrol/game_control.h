@@ -91,7 +91,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
   Links<IAgentJudge> judges_;
-  std::vector<IAgentJudge*> activeJudges_;  ///< of findJudges()
+  std::vector<gamecontrol::Judge> activeJudges_;  ///< of findJudges()
   std::optional<gamecontrol::AgentLog> log_;
   gamecontrol::LockstepGate lockstep_;
   /// Robots that untrusted clients may load in lockstep; capacity: 2 * maxAgents; refilled by robots per second.

@@ -20,8 +20,8 @@ Participant::Participant(IConnection& connection)
 Participant::Participant(Behavior& behavior)
     : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
 
-void Participant::join(int number, AgentAspect& aspect, bool object) {
-  isObject_ = object;
+void Participant::join(int number, AgentAspect& aspect, Given given) {
+  given_ = given;
   number_ = number;
   aspect_ = &aspect;
   joinedAt_ = Clock::now();
@@ -100,7 +100,7 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+void Participant::execute(AgentLog& log, const Event& event, std::span<const Judge> judges) {
   const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
@@ -133,7 +133,7 @@ void Participant::execute(AgentLog& log, const Event& event, std::span<IAgentJud
 }
 
 /// Effectors with modifiers act after all others. Also without an action: an earlier one may be due now.
-void Participant::executeModified(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges) {
+void Participant::executeModified(AgentLog& log, const Event& event, std::span<const Judge> judges) {
   for (const auto& m : effectors_.modified()) {
     NowRunning now("act");
     if (const Effector* effector = m->effector.get()) try {
@@ -155,12 +155,14 @@ void Participant::executeModified(AgentLog& log, const Event& event, std::span<I
 }
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
-                                std::span<IAgentJudge* const> judges) {
+                                std::span<const Judge> judges) {
   try {
-    AgentAspect* const agent = aspect();
-    for (IAgentJudge* judge : judges)
-      if (const std::string why = agent ? judge->judgeAction(*agent, effector, action) : std::string(); !why.empty())
-        return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
+    const Ref<Effector> judged(judges.empty() ? nullptr : &effector);
+    for (const Judge& j : judges)
+      if (AgentAspect* const agent = j.leaf && judged ? aspect() : nullptr)
+        if (const std::string why = j.judge->judgeAction(*agent, effector, action); !why.empty())
+          return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
+    if (!judges.empty() && !judged) return;  // a judge removed it
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();
@@ -185,9 +187,8 @@ bool Participant::resolveRobot() {
     return false;
   }
   const std::size_t effectors = effectors_.rebuild(*root), perceptors = percepts_.rebuild(*root);
-  // Without a robot it has the scene effector, unless it is an object of the scene.
-  const bool first = !hasRobot_ && (perceptors > 0 || effectors > (isObject_ ? 0 : 1));
-  blind_ = perceptors == 0;
+  const bool first = !hasRobot_ && (perceptors > given_.perceptors || effectors > given_.effectors);
+  blind_ = perceptors <= given_.perceptors;
   hasRobot_ |= first;
   return first;
 }
@@ -225,7 +226,7 @@ void Participant::think(AgentLog& log, std::int64_t cycle) {
   try {
     behavior()->think(percepts(), actions);
   } catch (const std::exception& fault) {
-    behavior()->kernel().countFault();
+    if (behavior()) behavior()->kernel().countFault();  // it may have removed itself
     warn(log, cycle, fmt::format("it threw: {}", fault.what()));
   }
   if (actions.isUnbalanced() && actions.balance() != 0)

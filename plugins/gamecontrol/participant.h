@@ -41,6 +41,12 @@ namespace spark::gamecontrol {
 /// The sync predicate of agents without a robot; a robot's sync effector defines its own.
 inline constexpr std::string_view kSync = "syn";
 
+/// A rule that judges. A script may remove it while others judge or act.
+struct Judge {
+  Ref<Leaf> leaf;
+  IAgentJudge* judge;  ///< while `leaf` exists
+};
+
 /// An agent behind a connection (a client), or one that a Behavior drives inside the host. Simulation thread, except
 /// sense().
 class Participant {
@@ -69,9 +75,13 @@ class Participant {
   /// The connection ended.
   void disconnect() { connection_ = nullptr; }
 
-  /// Assigns number and aspect. A behavior adds its first actions. `object`: the aspect was made for an object of the
-  /// scene, and the agent needs no robot.
-  void join(int number, AgentAspect& aspect, bool object = false);
+  /// What game control gives an agent when it joins.
+  struct Given {
+    std::size_t effectors = 0, perceptors = 0;
+  };
+  /// Assigns number and aspect. A behavior adds its first actions. The agent has a robot as soon as it has more than
+  /// what is given.
+  void join(int number, AgentAspect& aspect, Given given);
   /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
   /// True while it has sent messages but its first percepts may be under way.
@@ -93,7 +103,7 @@ class Participant {
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
   /// Executes the pending actions that no judge refuses. `event`: of the act phase.
-  void execute(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges);
+  void execute(AgentLog& log, const Event& event, std::span<const Judge> judges);
   /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
   /// mistake. False if the line was dropped because there were too many.
   bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
@@ -170,9 +180,9 @@ class Participant {
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
   bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
-  void executeModified(AgentLog& log, const Event& event, std::span<IAgentJudge* const> judges);
+  void executeModified(AgentLog& log, const Event& event, std::span<const Judge> judges);
   void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
-                     std::span<IAgentJudge* const> judges);
+                     std::span<const Judge> judges);
   void think(AgentLog& log, std::int64_t cycle);
   /// The cycle count in the next sense phase.
   std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }
@@ -192,8 +202,8 @@ class Participant {
   Ref<IParser> parser_;
   const bool inside_;
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false;
-  bool isObject_ = false;  ///< its aspect was made for an object of the scene
-  bool blind_ = false;     ///< it has no perceptors: its behavior is called with empty percepts
+  bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
+  Given given_;
   LockstepRecord lockstep_;
   ActionQueue actions_;
   EffectorTable effectors_;

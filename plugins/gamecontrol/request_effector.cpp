@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -47,6 +48,18 @@ Node* findBelow(Node& node, std::string_view name) {
   return nullptr;
 }
 
+/// True for names that are one word of a message and of a log line.
+bool isPlain(std::string_view name) {
+  return std::all_of(name.begin(), name.end(), [](char c) {
+    return c > ' ' && c < 0x7f && std::string_view("()\"\\;").find(c) == std::string_view::npos;
+  });
+}
+
+/// True for what game control gives an agent once: another one would undo its limits.
+bool isGiven(ClassObject& type) {
+  return type.isA("RequestEffector") || type.isA("RequestPerceptor") || type.isA("SceneEffector");
+}
+
 bool isBelow(const Leaf& node, const Node& above) {
   for (const Leaf* up = &node; up; up = up->parent())
     if (up == &above) return true;
@@ -78,8 +91,8 @@ void RequestEffector::describe(Description<RequestEffector>& d) {
   d.on<&R::prepare>(phase::kPrepare);
 }
 
-void RequestEffector::addTo(AgentAspect& aspect) {
-  aspect.create("RequestEffector", "_Request");
+void RequestEffector::addTo(AgentAspect& aspect, const std::string& folder) {
+  aspect.create<RequestEffector>("RequestEffector", "_Request").folder_ = folder;
   aspect.create("RequestPerceptor", kAnswers);
 }
 
@@ -94,6 +107,8 @@ std::string RequestEffector::act(const Element& action) {
     if (request.type.empty() || (kind != Kind::scene && request.name.empty())) return kUsage;
     if (std::max({request.type.size(), request.name.size(), request.at.size()}) > kMaxText)
       return fmt::format("expected texts of at most {} bytes, found a longer one.", kMaxText);
+    if (!isPlain(request.type) || !isPlain(request.name) || !isPlain(request.at))
+      return "expected names of printable ASCII characters, found others, a blank, a bracket or a quote.";
     pending_.push_back(std::move(request));
     return {};
   }
@@ -106,7 +121,8 @@ void RequestEffector::prepare(const Event&) {
   const std::vector<Request> requests = std::exchange(pending_, {});
   if (!nearest) return;
   AgentAspect& root = nearest->outermost();
-  auto* const answers = find<RequestPerceptor>(fmt::format("../{}", kAnswers));
+  const Ref<RequestPerceptor> answers(find<RequestPerceptor>(fmt::format("../{}", kAnswers)));
+  const Ref<RequestEffector> self(this);  // a judge may be a script that removes the agent
   for (const Request& request : requests) {
     std::string why;
     try {
@@ -114,6 +130,7 @@ void RequestEffector::prepare(const Event&) {
     } catch (const std::exception& e) {
       why = e.what();
     }
+    if (!self) return;
     if (why.empty()) ++parts_;
     if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
   }
@@ -128,6 +145,8 @@ Node* RequestEffector::parentFor(const Request& request, AgentAspect& root) cons
 
 std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   // What it is, and where it goes.
+  if (const auto* const robot = find<SceneEffector>("../_CreateEffector"); robot && !robot->loaded())
+    return "there is no robot yet: expected (scene <file>) first";
   if (parts_ >= maxParts_) return fmt::format("{} requests were granted, no more are", maxParts_);
   Node* const parent = parentFor(request, root);
   if (!parent) return fmt::format("there is no node {} in this robot", request.at);
@@ -137,7 +156,7 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   } else {
     const char* const base = request.kind == Kind::perceptor ? "Perceptor" : "Effector";
     ClassObject* const type = kernel().findClass(request.type);
-    if (!type || type->isAbstract() || !type->isA(base))
+    if (!type || type->isAbstract() || !type->isA(base) || isGiven(*type))
       return fmt::format("expected the class of {} {}, found {}",
                          request.kind == Kind::perceptor ? "a perceptor," : "an effector,",
                          request.kind == Kind::perceptor ? "such as GPS" : "such as HingeEffector", request.type);

@@ -36,7 +36,8 @@ class RequestEffector : public Effector {
  public:
   static void describe(Description<RequestEffector>& d);
   /// Gives an agent this effector and the perceptor that reports the results.
-  static void addTo(AgentAspect& aspect);
+  /// `folder`: scene files that it asks for are below it.
+  static void addTo(AgentAspect& aspect, const std::string& folder);
   std::string predicate() const override { return "request"; }
   std::string act(const Element& action) override;
 

@@ -24,6 +24,8 @@ class SceneEffector : public Effector {
 
   /// True while its robot waits to be loaded, and in the cycle after a robot that had to wait was loaded.
   bool late() const { return late_; }
+  /// True if the agent has its robot.
+  bool loaded() const { return loaded_; }
 
   std::string act(const Element& action) override {
     if (loaded_)

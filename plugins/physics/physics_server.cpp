@@ -1,6 +1,7 @@
 #include "physics_server.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "api/phases.h"
 #include "colliders.h"
@@ -223,13 +224,14 @@ bool PhysicsServer::isHidden(const Vec3& from, const Vec3& to, const IRigidBody*
   const double length = way.norm();
   if (!std::isfinite(length) || length == 0) return false;
   const Vec3 unit = way / length;
-  const physics::Accepts accepts = [&](const engine::Geom& g) {
+  const auto hides = [&](const engine::Geom& g) {
     ICollider& collider = colliderOf(g.owner);
     if ((own && collider.body() == own) || (except && isBelow(collider.leaf(), *except))) return false;
     const auto index = static_cast<engine::Index>(&g - world.model().geoms.data());
     const Pose pose = physics::poseOf(world.model(), world.state(), index);
     return physics::distanceTo(g.shape, pose.rotation.transpose() * (to - pose.position)) > kAtSurface;
   };
+  const physics::Accepts accepts = std::cref(hides);  // a copy would allocate
   if (rays_.isCurrent(world.model(), world.poses())) return rays_.meets(from, unit, length, accepts);
   return physics::castRay(world.model(), world.state(), from, unit, length, accepts).has_value();
 }

@@ -128,6 +128,20 @@ TEST_CASE("A behavior written in Lua receives percepts and acts") {
   REQUIRE(actionLog() == std::vector<std::string>{"1 he1 6"});
 }
 
+TEST_CASE("A behavior written in Lua may delete itself, when it starts or thinks") {
+  for (const char* event : {"start", "think"}) {
+    Arena a;
+    auto& b = a.kernel.create<Node>("ScriptBehavior", "/usr/agent/b");
+    scripts(a.kernel).attachText(b,
+                                 "on('start', function(self) self.actions = '(scene robot)' end) on('" +
+                                     std::string(event) + "', function(self) self:delete() end)",
+                                 "test", true);
+    for (int i = 0; i < 6; ++i) a.cycle();
+    CHECK(a.kernel.root().find("/usr/agent/b") == nullptr);
+    CHECK(a.agents() == 0);
+  }
+}
+
 TEST_CASE("A behavior that cannot get an agent is reported once") {
   Arena a;
   a.kernel.registerClass<TestBehavior>();

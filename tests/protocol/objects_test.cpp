@@ -22,6 +22,23 @@ class Pusher : public Behavior {
   int thoughts = 0, places = 0;
 };
 
+/// Fails to start, or leaves while it thinks.
+class Quitter : public Behavior {
+  SPARK_CLASS(Quitter, Behavior)
+ public:
+  static void describe(Description<Quitter>& d) { d.doc("Fails or leaves."); }
+  void start(Predicates&) override {
+    ++starts;
+    if (inStart) throw Error("it does not start");
+  }
+  void think(const Predicates&, Predicates&) override {
+    parent()->remove(*this);
+    throw Error("it has left");
+  }
+  bool inStart = false;
+  int starts = 0;
+};
+
 }  // namespace
 
 TEST_CASE("A ball becomes an agent, plays, and becomes a ball again") {
@@ -77,4 +94,43 @@ TEST_CASE("An object whose mind is taken away is no agent, and keeps what it is 
   CHECK(agents() == 1);
   CHECK(ball.find("agent") == nullptr);
   CHECK(ball.find("physics") != nullptr);
+}
+
+TEST_CASE("A behavior that fails to start makes no agent, and the object keeps what it has") {
+  Stadium s;
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Quitter>();
+  ball.kernel().registerClass<Pusher>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  auto& first = aspect.create<Quitter>("Quitter", "first");
+  first.inStart = true;
+  aspect.create("ForceEffector", "legs");
+  auto& second = aspect.create<Pusher>("Pusher", "second");
+  s.run(20);
+  CHECK(first.starts == 1);  // not tried again
+  CHECK(second.thoughts > 10);
+  CHECK(s.get("/sys/server/gamecontrol", "agentCount").toInteger() == 1);
+}
+
+TEST_CASE("A behavior may remove itself while it thinks") {
+  Stadium s;
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Quitter>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  aspect.create("ForceEffector", "legs");
+  aspect.create("Quitter", "mind");
+  s.run(10);
+  CHECK(s.get("/sys/server/gamecontrol", "agentCount").toInteger() == 0);
+  CHECK(ball.find("agent") == nullptr);
+}
+
+TEST_CASE("An object without sensors thinks in every cycle, also where agents may ask for some") {
+  Stadium s({{"/sys/server/gamecontrol.requests", true}});
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Pusher>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  aspect.create("ForceEffector", "legs");
+  auto& mind = aspect.create<Pusher>("Pusher", "mind");
+  s.run(20);
+  CHECK(mind.thoughts > 10);
 }

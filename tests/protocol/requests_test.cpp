@@ -1,4 +1,5 @@
 // Agents that ask for perceptors and effectors while they run, and rules that refuse.
+#include "api/agents.h"
 #include "spark/script_server.h"
 #include "stadium.h"
 
@@ -77,6 +78,62 @@ TEST_CASE("Requests that cannot be granted are answered with what was expected")
   std::string last;
   for (int i = 0; i < 40; ++i) last = m.after("(request (perceptor GPS)(name more" + std::to_string(i) + "))", 2);
   CHECK(has(m.after("(request (perceptor GPS)(name last))"), "32 requests were granted, no more are"));
+}
+
+TEST_CASE("Requests cannot undo what limits an agent, and names are plain words") {
+  AskingMatch m;
+  for (const char* given :
+       {"(request (effector SceneEffector)(name x))", "(request (effector RequestEffector)(name x))",
+        "(request (perceptor RequestPerceptor)(name x))"})
+    CHECK(has(m.after(given), "(refused (name x) (why expected the class of"));
+  for (const char* name : {"\"a b\"", "\"a\nb\"", "a\xff", "\xc3\xa9", "\";\""})
+    CHECK_FALSE(has(m.after("(request (perceptor GPS)(name " + std::string(name) + "))"), "(granted"));
+}
+
+TEST_CASE("Being able to ask is no robot") {
+  Stadium s({{"/sys/server/gamecontrol.requests", true}, {"/sys/server/gamecontrol.idleLimit", 1e-9}});
+  const auto seen = [&] { return s.get("/sys/server/gamecontrol", "agentsSeen").toInteger(); };
+  Player& idle = s.connect();
+  s.run(3);
+  CHECK(seen() == 0);
+  CHECK(idle.client.ended());
+}
+
+namespace {
+/// Removes a node when an agent asks for something.
+class Remover : public ControlAspect, public IAgentJudge {
+  SPARK_CLASS(Remover, ControlAspect)
+ public:
+  static void describe(Description<Remover>& d) {
+    d.doc("Removes a node.");
+    d.implements<IAgentJudge>();
+  }
+  void rule(const Event&) override {}
+  std::string judgeRequest(AgentAspect&, const PartRequest&) override {
+    if (Leaf* const node = target.get()) node->parent()->remove(*node);
+    return {};
+  }
+  std::string judgeAction(AgentAspect& agent, const Effector&, const Element&) override {
+    return inAct ? judgeRequest(agent, {PartRequest::Kind::scene, "", "", agent}) : std::string();
+  }
+  Ref<Leaf> target;
+  bool inAct = false;
+};
+}  // namespace
+
+TEST_CASE("A rule may remove another one, or the agent, while it judges") {
+  for (const bool inAct : {false, true})
+    for (const char* target : {"/sys/server/gamecontrol/second", "/usr/scene/AgentAspect1"}) {
+      AskingMatch m;
+      Node& control = *m.node("/sys/server/gamecontrol").asNode();
+      control.kernel().registerClass<Remover>();
+      auto& rule = control.create<Remover>("Remover", "first");
+      control.create("RequestAspect", "second");
+      rule.target = &m.node(target);
+      rule.inAct = inAct;
+      m.after("(request (perceptor GPS)(name gps2)(at body))", 3);
+      CHECK(control.kernel().root().find(target) == nullptr);
+    }
 }
 
 TEST_CASE("A rule refuses an agent's request the first time and disqualifies the agent the second time") {
