@@ -128,10 +128,11 @@ void RequestEffector::prepare(const Event&) {
     try {
       why = grant(request, root);
     } catch (const std::exception& e) {
-      why = e.what();
+      // The agent need not know the host's folders.
+      why = "it cannot be made, the log of the host says why";
+      if (self) refuse(static_cast<int>(request.kind), [&] { return fmt::format("{}: {}", request.type, e.what()); });
     }
     if (!self) return;
-    if (why.empty()) ++parts_;
     if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
   }
 }
@@ -169,6 +170,7 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
     if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent});
         !why.empty())
       return why;
+  ++parts_;
   if (request.kind == Kind::scene) {
     const std::size_t before = parent->children().size();
     try {

@@ -1,6 +1,10 @@
 #include "delay_line.h"
 
+#include <fmt/format.h>
+
 #include <utility>
+
+#include "spark/error.h"
 
 namespace spark::modifiers {
 
@@ -72,15 +76,20 @@ void DelayLine::save(StateWriter& out) const {
 void DelayLine::load(StateReader& in) {
   *this = {};
   cycle_ = in.readInteger();
-  entries_.resize(static_cast<std::size_t>(in.readInteger()));
-  for (Entry& e : entries_) {
+  std::int64_t elements = 0;
+  for (std::int64_t n = in.readInteger(); n > 0; --n) {
+    Entry& e = entries_.emplace_back();
     e.cycle = in.readInteger();
     e.time = in.readNumber();
     e.elements = static_cast<std::uint32_t>(in.readInteger());
     e.bytes = static_cast<std::size_t>(in.readInteger());
     bytes_ += e.bytes;
+    elements += e.elements;
   }
-  append(in.readValue().toList(), lists_);
+  const List waiting = in.readValue().toList();
+  if (static_cast<std::int64_t>(waiting.size()) != elements)
+    throw Error(fmt::format("expected the {} lists of a delay, found {}", elements, waiting.size()));
+  append(waiting, lists_);
 }
 
 }  // namespace spark::modifiers

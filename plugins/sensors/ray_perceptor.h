@@ -58,7 +58,11 @@ class RayPerceptor : public Perceptor, public ISharedView {
   double minRange_ = 0, maxRange_ = 10;
 
  private:
-  void setRange(double min, double max) { minRange_ = min, maxRange_ = max; }
+  void setRange(double min, double max) {
+    if (!(min >= 0 && max >= min))
+      throw RefusedValue(fmt::format("expected 0 <= min <= max [m], found {:g} and {:g}", min, max));
+    minRange_ = min, maxRange_ = max;
+  }
 
   Link<IPhysicsServer> physics_;
   TreeWatch tree_;

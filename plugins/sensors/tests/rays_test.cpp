@@ -65,6 +65,10 @@ TEST_CASE("a distance sensor measures to the first surface that is not its own r
   setProperty(sensor, "minRange", 3);
   setProperty(sensor, "maxRange", 5);
   CHECK(room.sense(sensor) == "(DST (n front) (d 3.00))");
+  for (const auto& [min, max] : {std::pair(-5.0, 1.0), {2.0, 1.0}, {0.0, std::nan("")}}) {
+    const Value range[] = {min, max};
+    CHECK_THROWS_WITH(callMethod(sensor, "setRange", range), Catch::Contains("expected 0 <= min <= max [m]"));
+  }
 }
 
 TEST_CASE("a lidar measures from right to left, along the directions of its fan", "[senses]") {

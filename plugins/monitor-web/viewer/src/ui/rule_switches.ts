@@ -53,6 +53,7 @@ export class RuleSwitches {
       if (this.rules.has(name) || this.others.has(name)) continue;
       const { properties } = await live.ask<NodeInfo>({ do: "get", path: `${kRules}/${name}` });
       if (live !== this.source) return;
+      if (this.rules.has(name)) continue;
       const enabled = properties.find((p) => p.name === "enabled");
       if (enabled) this.add(live, name, enabled.value === true, enabled.doc);
       else this.others.add(name);
