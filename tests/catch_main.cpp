@@ -2,10 +2,11 @@
 #include <catch2/catch.hpp>
 
 #if defined(__SANITIZE_THREAD__)
-/// ODE is not instrumented. It keeps the pose block of the last destroyed geom and hands it to the next world, also of
-/// another thread, by its own atomics. To the thread sanitizer this looks like a race. So does what Mesa's driver does
-/// in its own threads, which wait for each other by futexes.
+/// These libraries are not instrumented, so the thread sanitizer does not see how their threads wait for each other:
+/// ODE keeps the pose block of the last destroyed geom and hands it to the next world, also of another thread, by its
+/// own atomics; Mesa's driver has threads that wait by futexes; the threads of spdlog release the logger of each message
+/// by the counter of a shared_ptr.
 extern "C" __attribute__((visibility("default"))) const char* __tsan_default_suppressions() {
-  return "race:libode.so\nrace:swrast_dri.so\n";
+  return "race:libode.so\nrace:swrast_dri.so\nrace:libspdlog.so\n";
 }
 #endif
