@@ -41,7 +41,7 @@ def modifiers():
 def pictures():
     seen, good = tests("camera", "camera-pictures", "camera-client")
     say('test-camera "[.measure]"')
-    output = run([BIN.parent / "tests/test-camera", "[.measure]"]).stdout
+    output = run([BIN.parent / "tests/test-camera", "[.measure]"], cwd=BIN.parent).stdout  # it leaves its pictures there
     rates = {f"{name} {kind}": float(rate) for name, kind, rate in re.findall(r"^(\S+) +(\S+) +drawn +([0-9.]+)/s", output, re.MULTILINE)}
     slowest = min(rates, key=rates.get) if rates else None
     measured = f"{seen}; {len(rates)} kinds of pictures of 320 x 240: {rates[slowest]:.0f}/s ({slowest}) to {max(rates.values()):.0f}/s" if rates else seen
