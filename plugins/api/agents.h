@@ -45,10 +45,10 @@ class AgentAspect : public Transform {
   /// Called once by game control.
   void setNumber(int n) { number_ = n; }
   /// The agent's own part of the scene: the outermost aspect, or the object that it makes an agent, which is the
-  /// nearest transform above it.
+  /// transform that it is a child of. Aspects of robots are children of the scene.
   Node& object() {
     AgentAspect& top = outermost();
-    Transform* const above = top.transform();
+    Transform* const above = top.parent() ? top.parent()->as<Transform>() : nullptr;
     return above ? static_cast<Node&>(*above) : top;
   }
   /// The outermost aspect above, or this one.
@@ -220,16 +220,13 @@ class IAgentJudge {
   /// Judges a request before the node is made, in the prepare phase. Returns "" or one line that says why it is
   /// refused; the agent gets this line. Must not throw.
   virtual std::string judgeRequest(AgentAspect&, const PartRequest&) { return {}; }
-  /// Judges an action before `effector` executes it, in the act phase, in the order of the agent's message. Returns ""
-  /// or one line that says why it is refused; the log gets this line. Must not throw.
-  virtual std::string judgeAction(AgentAspect&, const Effector& effector, const Element& action) {
-    (void)effector, (void)action;
-    return {};
-  }
+  /// Judges an action before the effector executes it, in the act phase, in the order of the agent's message. Returns
+  /// "" or one line that says why it is refused; the log gets this line. Must not throw.
+  virtual std::string judgeAction(AgentAspect&, const Effector&, const Element&) { return {}; }
 };
 
-/// The program of an agent that runs inside the host: a C++ class or Lua. Below /usr/agent. Registered by
-/// `gamecontrol`.
+/// The program of an agent that runs inside the host: a C++ class or Lua. Below /usr/agent, or below the AgentAspect of
+/// an object. Registered by `gamecontrol`.
 class Behavior : public Node {
   SPARK_CLASS(Behavior, Node)
  public:
@@ -256,7 +253,7 @@ class IGameControl {
   /// Removes the agent like removeAgent(), closes its connection, and logs why: one line without a full stop at its
   /// end.
   virtual void disqualify(AgentAspect& agent, std::string_view why) = 0;
-  /// Asks all judges (IAgentJudge) about a request. Returns "" if nobody refuses it, else the reason.
+  /// Asks all judges (IAgentJudge) about a request. Returns "" if none of them refuses it, otherwise the reason.
   virtual std::string judgeRequest(AgentAspect& agent, const PartRequest& request) = 0;
   /// Number of agents that ever had a robot.
   virtual int agentsSeen() const = 0;

@@ -238,4 +238,11 @@ class IVisual {
   virtual std::array<Color, 3> lightColors() const { return {}; }
 };
 
+/// True if `node` is `above` or below it.
+inline bool isBelow(const Leaf& node, const Node& above) {
+  const Leaf* up = &node;
+  while (up && up != &above) up = up->parent();
+  return up != nullptr;
+}
+
 }  // namespace spark

@@ -190,24 +190,10 @@ void GameControl::disqualify(AgentAspect& agent, std::string_view why) {
   }
 }
 
-void GameControl::findJudges() {
-  activeJudges_.clear();
-  for (const Found<IAgentJudge>& judge : judges_) {
-    const auto rule = judge.leaf->as<ControlAspect>();
-    if (!rule || rule->enabled()) activeJudges_.push_back({judge.leaf, judge.object});
-  }
-}
-
 std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& request) {
-  findJudges();
-  const Ref<AgentAspect> asking(&agent);
-  const Ref<Node> parent(&request.parent);
-  for (const gamecontrol::Judge& j : activeJudges_) {
-    if (!j.leaf) continue;
-    if (std::string why = j.judge->judgeRequest(agent, request); !why.empty()) return why;
-    if (!asking || !parent) return "where it was to be is gone";
-  }
-  return {};
+  gamecontrol::JudgeList judges;
+  judges.update(judges_);
+  return judges.judgeRequest(agent, request);
 }
 
 bool GameControl::ready(bool lockstep) {
@@ -274,7 +260,7 @@ void GameControl::takeTurn(const Event& event) {
     deliver();
   else
     for (const auto& p : participants_) p->promote();
-  findJudges();
+  activeJudges_.update(judges_);
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
     participants_[i]->execute(agentLog(), event, activeJudges_);

@@ -56,8 +56,6 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void takeTurn(const Event& event);
   void sense(const Event& event);
 
-  /// Lists the judges that are enabled.
-  void findJudges();
   void removeLeaving();
   void joinBehaviors();
   void joinNewcomers();
@@ -91,7 +89,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
   Links<IAgentJudge> judges_;
-  std::vector<gamecontrol::Judge> activeJudges_;  ///< of findJudges()
+  gamecontrol::JudgeList activeJudges_;  ///< of this turn
   std::optional<gamecontrol::AgentLog> log_;
   gamecontrol::LockstepGate lockstep_;
   /// Robots that untrusted clients may load in lockstep; capacity: 2 * maxAgents; refilled by robots per second.

@@ -100,7 +100,7 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
-void Participant::execute(AgentLog& log, const Event& event, std::span<const Judge> judges) {
+void Participant::execute(AgentLog& log, const Event& event, const JudgeList& judges) {
   const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
@@ -133,7 +133,7 @@ void Participant::execute(AgentLog& log, const Event& event, std::span<const Jud
 }
 
 /// Effectors with modifiers act after all others. Also without an action: an earlier one may be due now.
-void Participant::executeModified(AgentLog& log, const Event& event, std::span<const Judge> judges) {
+void Participant::executeModified(AgentLog& log, const Event& event, const JudgeList& judges) {
   for (const auto& m : effectors_.modified()) {
     NowRunning now("act");
     if (const Effector* effector = m->effector.get()) try {
@@ -155,14 +155,11 @@ void Participant::executeModified(AgentLog& log, const Event& event, std::span<c
 }
 
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
-                                std::span<const Judge> judges) {
+                                const JudgeList& judges) {
   try {
-    const Ref<Effector> judged(judges.empty() ? nullptr : &effector);
-    for (const Judge& j : judges)
-      if (AgentAspect* const agent = j.leaf && judged ? aspect() : nullptr)
-        if (const std::string why = j.judge->judgeAction(*agent, effector, action); !why.empty())
-          return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
-    if (!judges.empty() && !judged) return;  // a judge removed it
+    if (AgentAspect* const agent = aspect())
+      if (const std::string why = judges.judgeAction(*agent, effector, action); !why.empty())
+        return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();

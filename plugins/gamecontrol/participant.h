@@ -21,7 +21,6 @@
 /// depend on the time between its connection and that message.
 
 #include <chrono>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,6 +28,7 @@
 #include "gamecontrol/action_queue.h"
 #include "gamecontrol/agent_log.h"
 #include "gamecontrol/effector_table.h"
+#include "gamecontrol/judge_list.h"
 #include "gamecontrol/latency_meter.h"
 #include "gamecontrol/line_budget.h"
 #include "gamecontrol/lockstep_record.h"
@@ -40,12 +40,6 @@ namespace spark::gamecontrol {
 
 /// The sync predicate of agents without a robot; a robot's sync effector defines its own.
 inline constexpr std::string_view kSync = "syn";
-
-/// A rule that judges. A script may remove it while others judge or act.
-struct Judge {
-  Ref<Leaf> leaf;
-  IAgentJudge* judge;  ///< while `leaf` exists
-};
 
 /// An agent behind a connection (a client), or one that a Behavior drives inside the host. Simulation thread, except
 /// sense().
@@ -103,7 +97,7 @@ class Participant {
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
   /// Executes the pending actions that no judge refuses. `event`: of the act phase.
-  void execute(AgentLog& log, const Event& event, std::span<const Judge> judges);
+  void execute(AgentLog& log, const Event& event, const JudgeList& judges);
   /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
   /// mistake. False if the line was dropped because there were too many.
   bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
@@ -180,9 +174,9 @@ class Participant {
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
   bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
-  void executeModified(AgentLog& log, const Event& event, std::span<const Judge> judges);
+  void executeModified(AgentLog& log, const Event& event, const JudgeList& judges);
   void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
-                     std::span<const Judge> judges);
+                     const JudgeList& judges);
   void think(AgentLog& log, std::int64_t cycle);
   /// The cycle count in the next sense phase.
   std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }

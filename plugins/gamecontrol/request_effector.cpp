@@ -48,22 +48,14 @@ Node* findBelow(Node& node, std::string_view name) {
   return nullptr;
 }
 
-/// True for names that are one word of a message and of a log line.
+/// True for names that are one word in every language, and for none.
 bool isPlain(std::string_view name) {
-  return std::all_of(name.begin(), name.end(), [](char c) {
-    return c > ' ' && c < 0x7f && std::string_view("()\"\\;").find(c) == std::string_view::npos;
-  });
+  return name.empty() || (isWord(name) && std::all_of(name.begin(), name.end(), [](char c) { return c > 0; }));
 }
 
 /// True for what game control gives an agent once: another one would undo its limits.
 bool isGiven(ClassObject& type) {
   return type.isA("RequestEffector") || type.isA("RequestPerceptor") || type.isA("SceneEffector");
-}
-
-bool isBelow(const Leaf& node, const Node& above) {
-  for (const Leaf* up = &node; up; up = up->parent())
-    if (up == &above) return true;
-  return false;
 }
 
 }  // namespace

@@ -190,14 +190,6 @@ std::span<const engine::Contact> PhysicsServer::contacts() const {
   return contacts_;
 }
 
-namespace {
-bool isBelow(const Leaf& node, const Node& above) {
-  for (const Leaf* up = &node; up; up = up->parent())
-    if (up == &above) return true;
-  return false;
-}
-}  // namespace
-
 std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direction, double length,
                                              const Node* except) {
   const physics::WorldModel& world = expectWorld();

@@ -1,0 +1,32 @@
+#pragma once
+/// \file
+/// The rules that judge what agents ask for and do.
+
+#include <string>
+#include <vector>
+
+#include "api/agents.h"
+#include "spark/link.h"
+
+namespace spark::gamecontrol {
+
+/// Asks judges (IAgentJudge) one after the other. A judge may be a script that removes others, the effector that is
+/// judged, or the agent. Simulation thread.
+class JudgeList {
+ public:
+  /// Takes the judges of `links`, without control aspects that are disabled.
+  void update(const Links<IAgentJudge>& links);
+  /// IAgentJudge::judgeRequest() of all of them: "", or the reason of the first that refuses.
+  std::string judgeRequest(AgentAspect& agent, const PartRequest& request) const;
+  /// IAgentJudge::judgeAction() of all of them, in the same way. Allocates nothing without judges.
+  std::string judgeAction(AgentAspect& agent, Effector& effector, const Element& action) const;
+
+ private:
+  struct Judge {
+    Ref<Leaf> leaf;
+    IAgentJudge* judge;  ///< while `leaf` exists
+  };
+  std::vector<Judge> judges_;
+};
+
+}  // namespace spark::gamecontrol
