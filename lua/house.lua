@@ -147,8 +147,8 @@ function web()
   return server
 end
 
---- The log server: sparkctl sets the log's level at run time. `--set logFile=match.log` writes the log to a file as well,
---- `--set logLines=500` keeps the last messages for sparkctl. Simulations of a batch have no log of their own.
+--- The log server: sparkctl sets the log's level at run time. `--set logFile=match.log` writes the log to a file as
+--- well, `--set logLines=500` keeps the last messages for sparkctl. Simulations of a batch have no log of their own.
 function logs()
   local file  = option{ name = "logFile", default = "", doc = "File that gets the log, too; it rotates." }
   local lines = option{ name = "logLines", default = 0, doc = "How many log messages are kept for sparkctl." }
@@ -185,8 +185,8 @@ function drawing()
   return server
 end
 
---- Pictures for the cameras of robots (ImagePerceptor), which sense nothing without it. They are drawn on the processor.
---- Call it after materials(), if at all: meshes that only viewers have then get colours.
+--- Pictures for the cameras of robots (ImagePerceptor), which sense nothing without it. They are drawn on the
+--- processor. Call it after materials(), if at all: meshes that only viewers have then get colours.
 function camera()
   plugin "camera"
   if meshColours and get("/sys/server/material") then meshColours(get("/sys/server/material")) end

@@ -39,7 +39,8 @@ local ofMeshes = {
   ["None_rcs-naofield.png"] = { 0.1, 0.5, 0.1 }, ["soccerball_rcs-soccerball.png"] = { 1, 1, 1 },
   naogoalnet = { 0.8, 0.8, 0.8 }, yellow = { 1, 1, 0 }, ["sky-blue"] = { 0, 0.75, 1 },
   naoblack = { 0.1, 0.1, 0.1 }, naogrey = { 0.5, 0.5, 0.5 }, naowhite = { 1, 1, 1 },
-  matType0 = { 0.9, 0.9, 0.9 }, matType1 = { 0.9, 0.9, 0.9 }, matType2 = { 0.9, 0.9, 0.9 }, matType3 = { 0.9, 0.9, 0.9 },
+  matType0 = { 0.9, 0.9, 0.9 }, matType1 = { 0.9, 0.9, 0.9 },
+  matType2 = { 0.9, 0.9, 0.9 }, matType3 = { 0.9, 0.9, 0.9 },
 }
 
 --- Defines those colours in the material server.

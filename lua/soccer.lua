@@ -19,7 +19,7 @@ local field   = option{ name = "scene", default = "rsg/soccer/field.rsg", doc = 
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 local compat  = compatOption(league.compat)
-local offside = option{ name = "offside", default = false, doc = "Offside is judged; the installed base has no such rule." }
+local offside = option{ name = "offside", default = false, doc = "Offside is judged, unlike in the installed base." }
 
 local engine  = engineOption(league.solver)
 local cameras = option{ name = "cameras", default = false, doc = "Cameras of robots (ImagePerceptor) have pictures." }

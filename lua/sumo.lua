@@ -1,4 +1,4 @@
--- Sumo: two robots push each other out of a ring. The whole game is this file: the bodies, a perceptor, an effector, the
+-- Sumo: two robots push each other out of a ring. This file is the whole game: bodies, a perceptor, an effector, the
 -- rule, the score and the players.
 --
 --     sparkhost --config sumo.lua                                        the page shows the fight and the score
@@ -15,7 +15,7 @@ include "materials.lua"
 
 local bouts   = option{ name = "bouts", default = 5, doc = "Bouts of a game; 0: without end." }
 local limit   = option{ name = "limit", default = 20.0, doc = "After this time a bout is a draw, in seconds." }
-local players = option{ name = "players", default = 2, choices = { 0, 1, 2 }, doc = "Robots that are driven from inside." }
+local players = option{ name = "players", default = 2, choices = { 0, 1, 2 }, doc = "Robots driven from inside." }
 
 local ring, size = 1.0, 0.15                 -- radii [m]
 local force, torque = 30, 1                  -- of a full push [N, Nm]

@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// Keeps the last messages, for tools that ask later. They are no property, because everybody may read properties on
-/// the page, and the log holds the page's token.
+/// Keeps the last messages for tools that connect later. They are read by a method, not by a property: every viewer of
+/// the page can read properties, and the log contains the token of the page.
 class MemoryLogSink : public LogSink {
   SPARK_CLASS(MemoryLogSink, LogSink)
  public:
