@@ -1,14 +1,17 @@
 #include "mesh.h"
 
-#include <assimp/MemoryIOWrapper.h>
-#include <assimp/material.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <assimp/IOSystem.hpp>
-#include <assimp/Importer.hpp>
+#include <istream>
+#include <map>
+#include <span>
+#include <sstream>
+#include <streambuf>
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
 
 #include "spark/error.h"
 
@@ -27,92 +30,135 @@ std::string resourceOf(std::string_view named, const char* folder, const std::st
   return find(beside) ? beside : "";
 }
 
-/// Lets assimp read the mesh and its materials as resources, and no other file of this machine.
-class Resources : public Assimp::IOSystem {
- public:
-  Resources(const std::string& mesh, const std::string& bytes, const FindFile& find)
-      : mesh_(mesh), bytes_(bytes), find_(find) {}
-  bool Exists(const char* name) const override { return name == mesh_ || !resource(name).empty(); }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char* name, const char*) override {
-    if (name == mesh_) return stream(bytes_);
-    const std::string found = resource(name);
-    return found.empty() ? nullptr : stream(*find_(found));
+/// A stream over bytes that stay where they are.
+struct Bytes : std::streambuf {
+  explicit Bytes(const std::string& bytes) {
+    char* const begin = const_cast<char*>(bytes.data());  // which a streambuf for reading does not change
+    setg(begin, begin, begin + bytes.size());
   }
-  void Close(Assimp::IOStream* stream) override { delete stream; }
-
- private:
-  std::string resource(const char* name) const { return resourceOf(name, "materials", mesh_, find_); }
-  static Assimp::IOStream* stream(const std::string& bytes) {
-    auto* copy = new std::uint8_t[bytes.size()];
-    std::copy(bytes.begin(), bytes.end(), copy);
-    return new Assimp::MemoryIOStream(copy, bytes.size(), true);  // which owns the copy
-  }
-  const std::string& mesh_;
-  const std::string& bytes_;
-  const FindFile& find_;
 };
 
-Color colorOf(const aiMaterial& m, const char* key, unsigned type, unsigned index, Color otherwise) {
-  aiColor3D c;
-  if (m.Get(key, type, index, c) == AI_SUCCESS) return {c.r, c.g, c.b, 1};
-  return otherwise;
-}
+/// Reads the files of materials that a mesh names.
+struct Materials : tinyobj::MaterialReader {
+  Materials(const std::string& mesh, const FindFile& find) : mesh(mesh), find(find) {}
+  bool operator()(const std::string& name, std::vector<tinyobj::material_t>* out, std::map<std::string, int>* indices,
+                  std::string* warning, std::string* error) override {
+    const std::string resource = resourceOf(name, "materials", mesh, find);
+    if (resource.empty()) return false;
+    const std::string bytes = *find(resource);
+    Bytes buffer(bytes);
+    std::istream stream(&buffer);
+    tinyobj::LoadMtl(indices, out, &stream, warning, error);
+    return true;
+  }
+  const std::string& mesh;
+  const FindFile& find;
+};
 
-MeshMaterial materialOf(const aiMaterial& m, const std::string& mesh, const FindFile& find) {
+Color colorOf(const float (&c)[3]) { return {c[0], c[1], c[2], 1}; }
+
+MeshMaterial materialOf(const tinyobj::material_t& m, const std::string& mesh, const FindFile& find) {
   MeshMaterial out;
-  out.name = m.GetName().C_Str();
-  out.look.ambient = colorOf(m, AI_MATKEY_COLOR_AMBIENT, out.look.ambient);
-  out.look.diffuse = colorOf(m, AI_MATKEY_COLOR_DIFFUSE, out.look.diffuse);
-  out.look.specular = colorOf(m, AI_MATKEY_COLOR_SPECULAR, out.look.specular);
-  out.look.emission = colorOf(m, AI_MATKEY_COLOR_EMISSIVE, out.look.emission);
-  ai_real number = 0;
-  if (m.Get(AI_MATKEY_SHININESS, number) == AI_SUCCESS) out.look.shininess = std::clamp<double>(number, 0, 128);
-  if (m.Get(AI_MATKEY_OPACITY, number) == AI_SUCCESS) out.look.diffuse.a = static_cast<float>(number);
-  aiString file;
-  if (m.GetTexture(aiTextureType_DIFFUSE, 0, &file) == AI_SUCCESS)
-    out.texture = resourceOf(file.C_Str(), "textures", mesh, find);
+  out.name = m.name;
+  out.look.ambient = colorOf(m.ambient);
+  out.look.diffuse = colorOf(m.diffuse);
+  out.look.diffuse.a = m.dissolve;
+  out.look.specular = colorOf(m.specular);
+  out.look.emission = colorOf(m.emission);
+  out.look.shininess = std::clamp<double>(m.shininess, 0, 128);
+  if (!m.diffuse_texname.empty()) out.texture = resourceOf(m.diffuse_texname, "textures", mesh, find);
   return out;
 }
 
-void appendFace(const aiMesh& mesh, const aiFace& face, std::vector<Vertex>& out) {
-  const aiVector3D *a = &mesh.mVertices[face.mIndices[0]], *b = &mesh.mVertices[face.mIndices[1]],
-                   *c = &mesh.mVertices[face.mIndices[2]];
-  const aiVector3D plane = ((*b - *a) ^ (*c - *a)).NormalizeSafe();
-  for (unsigned i = 0; i < 3; ++i) {
-    const unsigned v = face.mIndices[i];
-    const aiVector3D p = mesh.mVertices[v], n = mesh.HasNormals() ? mesh.mNormals[v] : plane,
-                     t = mesh.HasTextureCoords(0) ? mesh.mTextureCoords[0][v] : aiVector3D();
-    out.push_back({{p.x, p.y, p.z}, {n.x, n.y, n.z}, {t.x, t.y}, {plane.x, plane.y, plane.z}});
+/// Builds a mesh from the lines of an OBJ file.
+class Builder {
+ public:
+  void addVertex(float x, float y, float z) { vertices_.emplace_back(x, y, z); }
+  void addNormal(float x, float y, float z) { normals_.emplace_back(x, y, z); }
+  void addPlace(float u, float v) { places_.emplace_back(u, v, 0); }
+  void setMaterial(const char* name) { part_ = &partOf(name); }
+  void setMaterials(std::span<const tinyobj::material_t> materials) {
+    materials_.assign(materials.begin(), materials.end());
   }
-}
+  /// A polygon; one with fewer than three corners shows nothing.
+  void addFace(std::span<const tinyobj::index_t> corners) {
+    if (!part_) part_ = &partOf("");
+    // Checked before the first corner is used; also those of lines, which are faces of two corners.
+    for (const tinyobj::index_t& c : corners) position(c);
+    for (std::size_t i = 2; i < corners.size(); ++i) addTriangle({corners[0], corners[i - 1], corners[i]});
+  }
+  Mesh take(const std::string& resource, const FindFile& find) {
+    for (const tinyobj::material_t& m : materials_) out_.materials.push_back(materialOf(m, resource, find));
+    for (auto& [material, part] : parts_)
+      if (!part.vertices.empty()) out_.parts.push_back(std::move(part));
+    return std::move(out_);
+  }
 
-MeshPart& partOf(Mesh& mesh, const std::string& material) {
-  for (MeshPart& p : mesh.parts)
-    if (p.material == material) return p;
-  return mesh.parts.emplace_back(MeshPart{material, {}});
+ private:
+  /// The element that an index of the file means: counted from 1, or from the last one backwards.
+  static const Eigen::Vector3f& at(const std::vector<Eigen::Vector3f>& all, int index, const char* what) {
+    const auto n = static_cast<long>(all.size()), i = index < 0 ? n + index : index - 1L;
+    if (i < 0 || i >= n) throw Error(fmt::format("expected a face of its {} {}, found number {}", n, what, index));
+    return all[static_cast<std::size_t>(i)];
+  }
+  const Eigen::Vector3f& position(const tinyobj::index_t& c) const { return at(vertices_, c.vertex_index, "vertices"); }
+
+  void addTriangle(const std::array<tinyobj::index_t, 3>& corners) {
+    const Eigen::Vector3f a = position(corners[0]), b = position(corners[1]), c = position(corners[2]);
+    // Of three points on a line: no direction, as normalized() leaves it.
+    const Eigen::Vector3f plane = (b - a).cross(c - a).normalized();
+    for (const tinyobj::index_t& corner : corners) {
+      const Eigen::Vector3f &p = position(corner),
+                            n = corner.normal_index ? at(normals_, corner.normal_index, "normals") : plane,
+                            t = corner.texcoord_index ? at(places_, corner.texcoord_index, "texture coordinates")
+                                                      : Eigen::Vector3f::Zero();
+      part_->vertices.push_back(
+          {{p.x(), p.y(), p.z()}, {n.x(), n.y(), n.z()}, {t.x(), t.y()}, {plane.x(), plane.y(), plane.z()}});
+    }
+  }
+  MeshPart& partOf(const std::string& material) {
+    MeshPart& part = parts_[material];
+    part.material = material;
+    return part;
+  }
+
+  std::vector<Eigen::Vector3f> vertices_, normals_, places_;
+  std::vector<tinyobj::material_t> materials_;
+  std::map<std::string, MeshPart> parts_;  ///< by material
+  MeshPart* part_ = nullptr;               ///< of the faces that follow
+  Mesh out_;
+};
+
+tinyobj::callback_t callbacks() {
+  tinyobj::callback_t out;
+  out.vertex_cb = [](void* data, float x, float y, float z, float) { static_cast<Builder*>(data)->addVertex(x, y, z); };
+  out.normal_cb = [](void* data, float x, float y, float z) { static_cast<Builder*>(data)->addNormal(x, y, z); };
+  out.texcoord_cb = [](void* data, float u, float v, float) { static_cast<Builder*>(data)->addPlace(u, v); };
+  out.usemtl_cb = [](void* data, const char* name, int) { static_cast<Builder*>(data)->setMaterial(name); };
+  out.mtllib_cb = [](void* data, const tinyobj::material_t* all, int count) {
+    static_cast<Builder*>(data)->setMaterials({all, static_cast<std::size_t>(count)});
+  };
+  out.index_cb = [](void* data, tinyobj::index_t* corners, int count) {
+    static_cast<Builder*>(data)->addFace({corners, static_cast<std::size_t>(count)});
+  };
+  return out;
 }
 
 }  // namespace
 
 Mesh readObj(const std::string& resource, const std::string& bytes, const FindFile& find) {
-  Assimp::Importer importer;
-  importer.SetIOHandler(new Resources(resource, bytes, find));  // which it owns
-  const aiScene* const scene =
-      importer.ReadFile(resource, aiProcess_Triangulate | aiProcess_PreTransformVertices | aiProcess_SortByPType);
-  if (!scene) throw Error(fmt::format("mesh '{}' cannot be read: {}", resource, importer.GetErrorString()));
-  Mesh out;
-  for (unsigned m = 0; m < scene->mNumMaterials; ++m)
-    out.materials.push_back(materialOf(*scene->mMaterials[m], resource, find));
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene->mMeshes[m];
-    if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
-    MeshPart& part = partOf(out, out.materials.at(mesh.mMaterialIndex).name);
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) appendFace(mesh, mesh.mFaces[f], part.vertices);
+  Builder builder;
+  Materials materials(resource, find);
+  Bytes buffer(bytes);
+  std::istream stream(&buffer);
+  std::string warning, error;
+  try {
+    tinyobj::LoadObjWithCallback(stream, callbacks(), &builder, &materials, &warning, &error);
+  } catch (const std::exception& e) {
+    throw Error(fmt::format("mesh '{}' cannot be read: {}", resource, e.what()));
   }
+  Mesh out = builder.take(resource, find);
   if (out.parts.empty()) throw Error(fmt::format("mesh '{}': expected triangles, found none", resource));
-  std::sort(out.parts.begin(), out.parts.end(),
-            [](const MeshPart& a, const MeshPart& b) { return a.material < b.material; });
   return out;
 }
 

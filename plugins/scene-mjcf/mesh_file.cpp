@@ -9,7 +9,11 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <sstream>
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
 
 #include "spark/error.h"
 
@@ -57,17 +61,42 @@ engine::ShapeDescription readMsh(const std::string& bytes) {
   return s;
 }
 
-/// The vertices of an OBJ file without faces.
-std::vector<double> readPoints(const std::string& bytes) {
-  std::vector<double> out;
-  std::istringstream lines(bytes);
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    std::string kind;
-    Vec3 v;
-    if (words >> kind && kind == "v" && words >> v.x() >> v.y() >> v.z()) out.insert(out.end(), v.data(), v.data() + 3);
+/// Vertices and faces of an OBJ file, whose polygons become fans of triangles.
+struct ObjFile {
+  engine::ShapeDescription shape;
+  void addFace(std::span<const tinyobj::index_t> corners) {
+    const auto vertices = static_cast<long>(shape.vertices.size() / 3);
+    const auto vertex = [vertices](const tinyobj::index_t& corner) {
+      const int number = corner.vertex_index;
+      const long v = number < 0 ? vertices + number : number - 1L;  // counted from 1, or backwards from the last one
+      if (v < 0 || v >= vertices)
+        throw Error(fmt::format("expected a face of its {} vertices, found number {}", vertices, number));
+      return static_cast<std::uint32_t>(v);
+    };
+    for (const tinyobj::index_t& corner : corners) vertex(corner);
+    for (std::size_t i = 2; i < corners.size(); ++i)
+      for (const std::size_t c : {std::size_t{0}, i - 1, i}) shape.triangles.push_back(vertex(corners[c]));
   }
-  return out;
+};
+
+engine::ShapeDescription readObj(const std::string& bytes) {
+  tinyobj::callback_t callbacks;
+  callbacks.vertex_cb = [](void* file, float x, float y, float z, float) {
+    for (const float c : {x, y, z}) {
+      if (!std::isfinite(c)) throw Error("expected finite numbers");
+      static_cast<ObjFile*>(file)->shape.vertices.push_back(c);
+    }
+  };
+  callbacks.index_cb = [](void* file, tinyobj::index_t* corners, int count) {
+    static_cast<ObjFile*>(file)->addFace({corners, static_cast<std::size_t>(count)});
+  };
+  ObjFile out;
+  std::istringstream stream(bytes);
+  std::string warning, error;
+  tinyobj::LoadObjWithCallback(stream, callbacks, &out, nullptr, &warning, &error);
+  if (out.shape.vertices.empty()) throw Error("expected vertices, found none");
+  out.shape.shape = engine::Shape::mesh;
+  return std::move(out.shape);
 }
 
 }  // namespace
@@ -77,14 +106,9 @@ engine::ShapeDescription readMesh(const std::string& name, const std::string& by
   std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
   for (char& c : format) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
   if (format == "msh") return readMsh(bytes);
+  if (format == "obj") return readObj(bytes);
   engine::ShapeDescription s;
   s.shape = engine::Shape::mesh;
-  // Assimp refuses a file without faces.
-  if (format == "obj" && bytes.find("\nf") == std::string::npos && !bytes.starts_with("f")) {
-    s.vertices = readPoints(bytes);
-    if (s.vertices.empty()) throw Error("expected vertices, found none");
-    return s;
-  }
   Assimp::Importer importer;
   importer.SetIOHandler(new NoFiles);  // which owns it
   const aiScene* const scene = importer.ReadFileFromMemory(

@@ -96,3 +96,13 @@ TEST_CASE("a mesh without triangles is refused, and no file of the machine is re
       readObj("models/a.obj", "mtllib /etc/passwd\nv 0 0 0\nv 1 0 0\nv 1 0 1\nusemtl x\nf 1 2 3\n", among({}));
   CHECK(mesh.parts.size() == 1);
 }
+
+TEST_CASE("a face of vertices that are not there is refused; indices below 0 count backwards") {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 0 1\n";
+  for (const char* const face : {"f 1 2 4\n", "f 0 1 2\n", "f -4 -2 -1\n"})
+    CHECK_THROWS_WITH(readObj("models/a.obj", vertices + face, among({})),
+                      Catch::Contains("models/a.obj") && Catch::Contains("expected a face of its 3 vertices"));
+  CHECK_THROWS_WITH(readObj("models/a.obj", vertices + "f 1//1 2//1 3//1\n", among({})),
+                    Catch::Contains("expected a face of its 0 normals, found number 1"));
+  CHECK(readObj("models/a.obj", vertices + "f -3 -2 -1\n", among({})).parts[0].vertices[2].position[2] == 1);
+}

@@ -282,6 +282,8 @@ TEST_CASE("mesh files may be MSH files, and OBJ files without faces") {
   check();
   h.folder.write("short.msh", msh.substr(0, msh.size() - 1));
   CHECK_THAT(h.failure(model("short.msh")), Catch::Contains("expected 112 bytes, found 111"));
+  h.folder.write("beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n");
+  CHECK_THAT(h.failure(model("beyond.obj")), Catch::Contains("expected a face of its 3 vertices, found number 4"));
   h.folder.write("empty.obj", "# nothing\n");
   CHECK_THAT(h.failure(model("empty.obj")), Catch::Contains("expected vertices, found none"));
 }
