@@ -1,13 +1,19 @@
 #pragma once
 /// \file
 /// What an engine does for the plugin `physics`: detect contacts, and step the state of a world (api/model.h). One
-/// thread at a time calls an engine.
+/// thread at a time calls an engine and all that it made.
 ///
-///     compile    when structure or parameters changed: the engine brings up to date what it keeps for the model
-///     detect     ICollision: contacts of the present poses; then collision handlers complete them
-///     step       IEngine: solves joints and contacts, integrates
+///     create     the node makes what one world needs: a solver, or a detector
+///     compile    structure or parameters changed: the solver brings up to date what it keeps
+///     detect     IDetector: contacts of the present poses; then collision handlers complete them
+///     step       ISolver: solves joints and contacts, integrates
 ///
-/// An engine of point masses needs step() alone.
+/// An engine of point masses needs create() and step() alone.
+
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "api/model.h"
 #include "spark/abi/api/engine.h"
@@ -15,22 +21,79 @@
 
 namespace spark::engine {
 
-/// Finds contacts.
-class ICollision {
+/// A node that makes one `Part` for each world. A part belongs to its node: it ends with end(), with the node at the
+/// latest, after the node's own members.
+template <class Made>
+class PerWorld {
  public:
-  SPARK_INTERFACE(ICollision, 1);
-  virtual ~ICollision() = default;
-  /// The node that offers it.
+  using Part = Made;
+  virtual ~PerWorld() = default;
+  /// The node.
   virtual Leaf& leaf() = 0;
-  /// Called before detect() when Model::structure or Model::collision changed. Elements are matched by identity; a
-  /// model that the engine has not seen yet is all new.
-  virtual void compile(const Model& model, const State& state) = 0;
+  /// Makes the part of a new world. The model stays where it is as long as the part lives. It is compiled before its
+  /// first use.
+  virtual std::unique_ptr<Part> create(const Model& model) = 0;
+  /// The same; the node keeps it.
+  Part& start(const Model& model) { return *parts_.emplace_back(create(model)); }
+  void end(const Part& part) {
+    std::erase_if(parts_, [&](const auto& p) { return p.get() == &part; });
+  }
+  /// The parts of all worlds, in the order of their start.
+  std::span<const std::unique_ptr<Part>> parts() const { return parts_; }
+
+ private:
+  std::vector<std::unique_ptr<Part>> parts_;
+};
+
+/// The part of one world: of whichever node is asked for it. It ends with this object.
+template <class Maker>
+class Attached {
+ public:
+  using Part = typename Maker::Part;
+  Attached() = default;
+  ~Attached() { end(); }
+  Attached(const Attached&) = delete;
+  Attached& operator=(const Attached&) = delete;
+  /// True when the next of() starts another part.
+  bool startsAnew(Maker& maker) const { return leaf_.get() != &maker.leaf(); }
+  /// The part that `maker` has made for the model, always the same model. That of another node ends.
+  Part& of(Maker& maker, const Model& model) {
+    if (!startsAnew(maker)) return *part_;
+    end();
+    part_ = &maker.start(model);
+    maker_ = &maker;
+    leaf_ = Ref<Leaf>(&maker.leaf());
+    return *part_;
+  }
+
+ private:
+  void end() {
+    if (leaf_) maker_->end(*part_);
+    leaf_ = {};
+  }
+  Ref<Leaf> leaf_;  ///< none: the node has gone, and the part with it
+  Maker* maker_ = nullptr;
+  Part* part_ = nullptr;
+};
+
+/// Finds the contacts of one world.
+class IDetector {
+ public:
+  virtual ~IDetector() = default;
+  /// Called before detect() when Model::structure or Model::collision changed. Elements are matched by identity (see
+  /// indexOf()). `edited`: the geoms whose shape, body or offset was set since the last call, each once, in that
+  /// order; when it is called for the first time all are new.
+  virtual void compile(const Model& model, const State& state, std::span<const Index> edited) = 0;
   /// Appends contacts to `out`, in an order that depends on the world alone: at most `perPair` points for each pair of
   /// geoms, the first geom as comesFirst() has it. Skips pairs of geoms of one body, pairs whose bodies a joint
   /// connects and pairs that the filter rejects. Reads the new poses of the bodies in `state.moved`.
   virtual void detect(const Model& model, const State& state, PairFilter filter, int perPair, Contacts& out) = 0;
-  /// Drops what was kept for a model that ends, or that another engine takes over.
-  virtual void forget(const Model& model) = 0;
+};
+
+/// Makes the detectors of worlds.
+class ICollision : public PerWorld<IDetector> {
+ public:
+  SPARK_INTERFACE(ICollision, 2);
 };
 
 /// One step of a world.
@@ -44,48 +107,69 @@ struct Step {
   bool steps(Index body) const { return only.empty() || only[body] != 0; }
 };
 
-/// Says once, as from `node`, that an engine leaves out the inertia of rotors, when a joint has one.
-inline void warnOfArmature(const Model& model, const Leaf& node, bool& said) {
-  const auto hasOne = [](const Joint& j) {
-    return std::any_of(j.axes.begin(), j.axes.end(), [](const JointAxis& a) { return a.armature > 0; });
-  };
-  if (said || !std::any_of(model.joints.begin(), model.joints.end(), hasOne)) return;
-  said = true;
-  node.kernel().log().warning("{}: the inertia of rotors (armature) has no effect with this engine", node.path());
-}
-
-/// Steps worlds.
-class IEngine {
+/// Steps one world.
+class ISolver {
  public:
-  SPARK_INTERFACE(IEngine, 4);
-  virtual ~IEngine() = default;
-  /// The node that offers it.
-  virtual Leaf& leaf() = 0;
-  /// Called before step() when Model::structure or Model::dynamics changed. See ICollision::compile().
-  virtual void compile(const Model& model, const State& state) = 0;
+  virtual ~ISolver() = default;
+  /// Called before step() when Model::structure or Model::dynamics changed. Elements are matched by identity (see
+  /// indexOf()).
+  virtual void compile(const Model&, const State&) {}
   /// Advances the state by `dt`. An island is a set of bodies that joints and solved contacts connect. Each island with
   /// an awake body is stepped: its bodies wake, forces are cleared, feedback is written, bodies are marked as moved.
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
-  /// True: the engine applies State::controls itself. False: they come as forces on the bodies. In both cases dry
-  /// friction of controlled axes comes as a motor of speed 0.
-  virtual bool controls() const { return false; }
-  /// True: the engine applies JointAxis::damping itself. False: it comes as forces on the bodies.
-  virtual bool damps() const { return controls(); }
-  /// True: the engine applies the damping of bodies itself. False: it comes as forces on them.
-  virtual bool dampsBodies() const { return false; }
-  /// True: the engine applies the springs of JointAxis itself. False: they come as forces on the bodies.
-  virtual bool springs() const { return false; }
-  /// The length of step that suits the engine [s], of which a step of the simulation has a whole number; 0: any. That
-  /// of the world (WorldParameters::timestep) comes first.
-  virtual double usualStep() const { return 0; }
-  /// False: Step::only has no effect, so the engine cannot be another one's deferred engine.
-  virtual bool stepsParts() const { return true; }
-  /// False: the engine steps all bodies always, and none is put to sleep.
-  virtual bool sleeps() const { return true; }
-  /// Drops what was kept for a model that ends, or that another engine takes over.
-  virtual void forget(const Model& model) = 0;
+  /// What finds the contacts, of an engine with Capabilities::detects: the solver is compiled before it, also when
+  /// Model::collision changed. Otherwise nullptr.
+  virtual IDetector* detector() { return nullptr; }
+};
+
+/// What an engine can do. `tests/engines` tests each of them and writes them to docs/engines.md; a world with something
+/// that has no effect is reported in the log.
+struct Capabilities {
+  bool rotation = true;      ///< bodies rotate
+  bool joints = true;        ///< joints have an effect
+  bool loops = true;         ///< joints may close loops of bodies, and angular motors may drive other joints
+  bool jointForces = true;   ///< joints measure their load (Joint::wantsFeedback)
+  bool armature = false;     ///< joints have the inertia of their rotors (JointAxis::armature)
+  bool sleeps = true;        ///< bodies at rest fall asleep; otherwise it steps all bodies always
+  bool surfaces = true;      ///< contacts have bounce, slip, and friction as a force, each its own
+  bool restores = true;      ///< a restored world continues bit for bit, also with another solver of the engine
+  bool parts = true;         ///< it can step some islands alone (Step::only), as another engine's deferred engine
+  bool detects = false;      ///< it finds contacts itself, and needs no ICollision
+  bool controls = false;     ///< it applies State::controls. Otherwise they come as forces on the bodies; in both cases
+                             ///< dry friction of controlled axes comes as a motor of speed 0
+  bool damping = false;      ///< it applies JointAxis::damping. Otherwise it comes as forces
+  bool springs = false;      ///< it applies the springs of JointAxis. Otherwise they come as forces
+  bool bodyDamping = false;  ///< it applies the damping of bodies. Otherwise it comes as forces
+  /// The length of step that suits it [s], of which a step of the simulation has a whole number; 0: any. That of the
+  /// world (WorldParameters::timestep) comes first.
+  double usualStep = 0;
+};
+
+/// The capabilities that a user notices, by name, as in docs/engines.md.
+struct NamedCapability {
+  const char* name;
+  bool Capabilities::*has;
+};
+inline constexpr NamedCapability kNamedCapabilities[] = {
+    {"rotation", &Capabilities::rotation},
+    {"joints", &Capabilities::joints},
+    {"joints that close loops, angular motors", &Capabilities::loops},
+    {"forces of joints", &Capabilities::jointForces},
+    {"inertia of rotors (armature)", &Capabilities::armature},
+    {"sleep", &Capabilities::sleeps},
+    {"surfaces of contacts: bounce, slip, friction as a force", &Capabilities::surfaces},
+    {"continues bit for bit from a saved state, or when it is replaced", &Capabilities::restores},
+    {"contacts of its own", &Capabilities::detects},
+};
+
+/// Makes the solvers of worlds.
+class IEngine : public PerWorld<ISolver> {
+ public:
+  SPARK_INTERFACE(IEngine, 5);
+  /// Always the same.
+  virtual Capabilities capabilities() const { return {}; }
 };
 
 }  // namespace spark::engine

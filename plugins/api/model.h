@@ -4,8 +4,8 @@
 /// engines read the model and step the state. Double precision, SI units, radians, world frame unless said otherwise.
 ///
 /// The elements of an array are in order of creation, and an index is a position in it: indices change when an earlier
-/// element is removed, identities (`id`) never. An engine that keeps something of its own for an element matches it by
-/// identity in IEngine::compile().
+/// element is removed, identities (`id`) never. A solver that keeps something of its own for an element matches it by
+/// identity in ISolver::compile(): see indexOf().
 
 #include <algorithm>
 #include <array>
@@ -264,7 +264,6 @@ struct alignas(64) Joint {
 
 /// What is in a world.
 struct Model {
-  std::uint64_t id = 0;        ///< identity of the world in its process
   WorldParameters parameters;  ///< numbers are valid
   /// The world repeats recorded sessions of the installed base: numbers that enter it are rounded to single precision,
   /// and engines that can do so keep that base's order of contacts.
@@ -277,8 +276,6 @@ struct Model {
   /// Versions: `structure` changes with every element that is created, removed or attached, `collision` with spaces and
   /// geoms, `dynamics` with masses, joints and parameters.
   std::uint64_t structure = 0, collision = 0, dynamics = 0;
-  /// The geoms that were set (shape, body, offset) since the last compile(), each once, in that order.
-  std::vector<Index> editedGeoms;
 };
 
 /// Where a body is and how it moves, world frame.
@@ -289,12 +286,12 @@ struct BodyState {
   Mat3 rotation;
 };
 
-/// True when an element with this identity is in an array of the model, for an engine that compares its own with it.
+/// The index of the element with this identity; kNone: there is none any more.
 template <class Element>
-bool contains(const std::vector<Element>& elements, std::uint64_t id) {
+Index indexOf(const std::vector<Element>& elements, std::uint64_t id) {
   const auto found = std::lower_bound(elements.begin(), elements.end(), id,
                                       [](const Element& e, std::uint64_t wanted) { return e.id < wanted; });
-  return found != elements.end() && found->id == id;
+  return found != elements.end() && found->id == id ? static_cast<Index>(found - elements.begin()) : kNone;
 }
 
 /// The state of a body that a step changes, world frame. What is read together lies together, in cache lines.
@@ -303,9 +300,9 @@ struct alignas(64) DynamicState {
   Vec3 position = Vec3::Zero();                  ///< of the centre of mass [m]
   bool awake = true;                             ///< false: the body sleeps
   bool moved = false;                            ///< it is in State::moved
-  /// For engines that keep poses and velocities in memory of their own: such an engine writes its mark
-  /// (State::newMark()) when both agree; all other code that writes a pose or a velocity writes 0.
-  mutable std::uint32_t mark = 0;
+  /// Rises whenever pose or velocity are written, by whomever: a solver that keeps them in memory of its own knows by
+  /// it whether they are still the same.
+  std::uint32_t version = 1;
   Mat3 rotation = Mat3::Identity();     ///< the same as `quaternion`, as a matrix
   Vec3 angularVelocity = Vec3::Zero();  ///< rad/s
   Vec3 linearVelocity = Vec3::Zero();   ///< m/s
@@ -375,9 +372,6 @@ struct State {
   std::vector<AxisControl> controls;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.
   std::vector<Index> moved;
-  /// A mark for DynamicState::mark that was not given before; never 0.
-  std::uint32_t newMark() const { return ++marks; }
-  mutable std::uint32_t marks = 0;  ///< number of marks so far
   /// Appends a body to `moved`, once.
   void markMoved(Index body) {
     if (std::exchange(bodies[body].moved, true)) return;
@@ -400,7 +394,7 @@ struct Surface {
   double slip1 = 0, slip2 = 0;  ///< force-dependent slip along the two tangents [m/(N s)]
 };
 
-/// One contact point. ICollision::detect() creates it, collision handlers complete it, IEngine::step() solves it.
+/// One contact point. IDetector::detect() creates it, collision handlers complete it, ISolver::step() solves it.
 struct Contact {
   Index geomA = kNone, geomB = kNone;
   Index bodyA = kNone, bodyB = kNone;  ///< of the geoms; kNone: static

@@ -9,6 +9,29 @@
 
 namespace spark {
 
+class ArticulatedEngine;
+
+namespace articulated {
+
+/// Steps one world, and has the deferred engine step the islands that are not solved here.
+class ArticulatedSolver : public engine::ISolver {
+ public:
+  /// `engine` owns it.
+  explicit ArticulatedSolver(ArticulatedEngine& engine) : engine_(engine) {}
+  void compile(const engine::Model&, const engine::State&) override { deferredKnows_ = false; }
+  void step(engine::Step& step) override;
+
+ private:
+  /// Stops the bodies of islands without a solution, when there is no engine below.
+  void hold(engine::Step& step, std::span<const std::uint8_t> bodies);
+  ArticulatedEngine& engine_;
+  Stepper stepper_;
+  engine::Attached<engine::IEngine> deferred_;
+  bool deferredKnows_ = false;  ///< it has compiled the model as it is now: it is told only when it is needed
+};
+
+}  // namespace articulated
+
 /// Solves joints and contacts in time linear in the bodies of each tree of joints. Uses the threads of the kernel's
 /// jobs.
 class ArticulatedEngine : public Node, public engine::IEngine {
@@ -20,7 +43,7 @@ class ArticulatedEngine : public Node, public engine::IEngine {
         "an engine below it.");
     d.implements<engine::IEngine>();
     d.link(&ArticulatedEngine::deferred_, Child<engine::IEngine>());
-    d.property("mostRows", &ArticulatedEngine::maxCouplingRows, &ArticulatedEngine::setMaxCouplingRows)
+    d.property("mostRows", &ArticulatedEngine::mostRows_)
         .min(0)
         .doc(
             "Islands with more rows of contacts between bodies and of joints that close loops are deferred to the "
@@ -34,27 +57,24 @@ class ArticulatedEngine : public Node, public engine::IEngine {
         .doc("Number of islands that were deferred to the engine below.");
   }
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model& model, const engine::State& state) override;
-  void step(engine::Step& step) override;
-  bool damps() const override { return true; }
-  void forget(const engine::Model& model) override;
+  engine::Capabilities capabilities() const override { return {.armature = true, .damping = true}; }
+  std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
+    return std::make_unique<articulated::ArticulatedSolver>(*this);
+  }
 
  private:
-  int maxCouplingRows() const { return stepper_.maxCouplingRows; }
-  void setMaxCouplingRows(int rows) { stepper_.maxCouplingRows = rows; }
-  /// Stops the bodies of islands without a solution, when there is no engine below.
-  void hold(engine::Step& step, std::span<const std::uint8_t> bodies);
-  std::int64_t islands() const { return stepper_.islands(); }
-  std::int64_t passes() const { return stepper_.passes(); }
-  std::int64_t exactSolutions() const { return stepper_.exactSolutions(); }
-  std::int64_t deferredIslands() const { return stepper_.deferredIslands(); }
-  articulated::Stepper stepper_;
+  friend class articulated::ArticulatedSolver;
+  /// The engine below, if it can step single islands.
+  engine::IEngine* deferred();
+  std::int64_t islands() const { return counts_.islands; }
+  std::int64_t passes() const { return counts_.passes; }
+  std::int64_t exactSolutions() const { return counts_.exactSolutions; }
+  std::int64_t deferredIslands() const { return counts_.deferredIslands; }
   Link<engine::IEngine> deferred_;
-  /// The models that `deferred_` has compiled as they are now: it is told only when it is needed.
-  std::vector<std::uint64_t> known_;
-  Ref<Leaf> knownBy_;
-  bool unfit_ = false;
-  bool held_ = false;  ///< hold() was called
+  int mostRows_ = 600;
+  articulated::Stepper::Counts counts_;  ///< of all worlds
+  bool unfit_ = false;                   ///< deferred() has said that it is not
+  bool held_ = false;                    ///< ArticulatedSolver::hold() was called
 };
 
 }  // namespace spark

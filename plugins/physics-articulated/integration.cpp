@@ -31,7 +31,7 @@ void integrate(engine::DynamicState& body, const Vec3& linearVelocity, const Vec
   body.force.setZero();
   body.torque.setZero();
   body.awake = true;
-  body.mark = 0;
+  ++body.version;
 }
 
 }  // namespace spark::articulated

@@ -45,8 +45,8 @@ Compiled compileWorld(const std::string& mjcf) {
   return c;
 }
 
-MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Compiled compiled)
-    : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)), mark_(state.newMark()) {
+MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
+    : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)) {
   linkOrigins_.resize(static_cast<std::size_t>(m_->nbody), Vec3::Zero());
   hasParts_.resize(static_cast<std::size_t>(m_->nbody), 0);
   const auto id = [&](int kind, const std::string& name) { return mj_name2id(m_.get(), kind, name.c_str()); };
@@ -94,18 +94,9 @@ MujocoWorld::MujocoWorld(const Model& model, const State& state, Trees trees, Co
     Vec3& edges = boxes_.emplace_back();
     for (int k = 0; k < 3; ++k) edges[k] = std::sqrt(std::max(mjMINVAL, i.sum() - 2 * i[k]) / mass * 6);
   }
+  taken_.assign(trees_.links.size(), 0);
   bind(model);
 }
-
-namespace {
-/// The index of an element with this identity; kNone: it was removed.
-template <class Element>
-Index indexOf(const std::vector<Element>& elements, std::uint64_t id) {
-  const auto found = std::lower_bound(elements.begin(), elements.end(), id,
-                                      [](const Element& e, std::uint64_t wanted) { return e.id < wanted; });
-  return found != elements.end() && found->id == id ? static_cast<Index>(found - elements.begin()) : kNone;
-}
-}  // namespace
 
 void MujocoWorld::bind(const Model& model) {
   // Trees of which something was removed or attached elsewhere move no more.
@@ -113,20 +104,22 @@ void MujocoWorld::bind(const Model& model) {
   for (Index i = 0; i < trees_.links.size(); ++i) {
     Link& link = trees_.links[i];
     const Origin& from = origins_[i];
-    link.body = indexOf(model.bodies, from.body);
-    link.joint = from.joint == 0 ? kNone : indexOf(model.joints, from.joint);
+    link.body = engine::indexOf(model.bodies, from.body);
+    link.joint = from.joint == 0 ? kNone : engine::indexOf(model.joints, from.joint);
     const bool same =
         link.body != kNone &&
         (from.joint == 0 || (link.joint != kNone && model.joints[link.joint].attachedAt == from.attachedAt));
     if (!same) gone[rootOf_[i]] = 1;
   }
   bodyId_.assign(model.bodies.size(), -1);
+  linkOf_.assign(model.bodies.size(), kNone);
   motors_.assign(m_->nv, {});
   coordinates_.assign(model.joints.size(), {});
   for (Index i = 0; i < trees_.links.size(); ++i) {
     Link& link = trees_.links[i];
     if (gone[rootOf_[i]]) link.body = link.joint = kNone;
     if (link.body == kNone) continue;
+    linkOf_[link.body] = i;
     bodyId_[link.body] = origins_[i].mujocoBody;  // -1: a connector without a body of its own
     if (link.joint == kNone) continue;
     bindMotors(model.joints[link.joint], link.joint, origins_[i].mujocoJoints);
@@ -136,7 +129,7 @@ void MujocoWorld::bind(const Model& model) {
   std::sort(joined_.begin(), joined_.end());
   geomOf_.assign(geoms_.size(), kNone);
   for (std::size_t i = 0; i < geoms_.size(); ++i) {
-    const Index geom = geoms_[i] == 0 ? kNone : indexOf(model.geoms, geoms_[i]);
+    const Index geom = geoms_[i] == 0 ? kNone : engine::indexOf(model.geoms, geoms_[i]);
     if (geom == kNone || (model.geoms[geom].body != kNone && bodyId_[model.geoms[geom].body] < 0)) continue;
     geomOf_[i] = geom;
   }
@@ -171,12 +164,13 @@ bool MujocoWorld::take(const Model& model, const State& state) {
   stale_.assign(trees_.links.size(), 0);
   bool any = false;
   for (Index i = 0; i < trees_.links.size(); ++i)
-    if (const Index body = trees_.links[i].body; body != kNone && state.bodies[body].mark != mark_)
+    if (const Index body = trees_.links[i].body; body != kNone && state.bodies[body].version != taken_[i])
       stale_[rootOf_[i]] = 1, any = true;
   if (!any) return false;
   for (Index i = 0; i < trees_.links.size(); ++i)
     if (stale_[rootOf_[i]] && trees_.links[i].body != kNone) takeLink(model, state, i);
-  for (const DynamicState& s : state.bodies) s.mark = mark_;
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    if (const Index body = trees_.links[i].body; body != kNone) taken_[i] = state.bodies[body].version;
   return true;
 }
 
@@ -254,7 +248,7 @@ void MujocoWorld::takeLink(const Model& model, const State& state, Index index) 
   d_->qvel[m_->jnt_dofadr[hinges[1]]] = spin.dot(child.rotation * y);
 }
 
-void MujocoWorld::giveConnector(const Model& model, State& state, Index index) const {
+void MujocoWorld::giveConnector(const Model& model, State& state, Index index) {
   const Link& link = trees_.links[index];
   const Joint& j = model.joints[link.joint];
   const DynamicState& parent = link.parent == kNone ? worldState() : state.bodies[trees_.links[link.parent].body];
@@ -280,12 +274,17 @@ void MujocoWorld::giveConnector(const Model& model, State& state, Index index) c
   }
   const Eigen::Quaterniond rotation(s.rotation);
   s.quaternion = {rotation.w(), rotation.x(), rotation.y(), rotation.z()};
-  s.awake = true;
-  s.mark = mark_;
-  state.markMoved(link.body);
+  given(state, link.body);
 }
 
-void MujocoWorld::give(const Model& model, State& state) const {
+void MujocoWorld::given(State& state, Index body) {
+  DynamicState& s = state.bodies[body];
+  s.awake = true;
+  taken_[linkOf_[body]] = ++s.version;
+  state.markMoved(body);
+}
+
+void MujocoWorld::give(const Model& model, State& state) {
   for (Index i = 0; i < state.bodies.size(); ++i) {
     DynamicState& s = state.bodies[i];
     s.force.setZero();
@@ -297,9 +296,7 @@ void MujocoWorld::give(const Model& model, State& state) const {
     s.rotation = rotationOf(s.quaternion);
     s.angularVelocity = toVec(d_->cvel + 6 * id);
     s.linearVelocity = velocityOf(id, s.position);
-    s.awake = true;
-    s.mark = mark_;
-    state.markMoved(i);
+    given(state, i);
   }
   // Parents come first.
   for (Index i = 0; i < trees_.links.size(); ++i)
@@ -338,6 +335,39 @@ void MujocoWorld::prepare(const Model& model) {
   const Session session(message_, m_.get(), mayTouch, this);
   mj_step1(m_.get(), d_.get());
   prepared_ = true;
+  findSpare();
+}
+
+void MujocoWorld::findSpare() {
+  pairs_.clear();
+  for (int i = 0; i < d_->ncon; ++i)
+    pairs_.emplace_back(pairOf(geomOf_[d_->contact[i].geom1], geomOf_[d_->contact[i].geom2]), i);
+  std::sort(pairs_.begin(), pairs_.end());
+  spare_.clear();
+  for (std::size_t first = 0, end; first < pairs_.size(); first = end) {
+    end = first + 1;
+    while (end < pairs_.size() && pairs_[end].first == pairs_[first].first) ++end;
+    if (end - first > static_cast<std::size_t>(perPair_)) thinOut({pairs_.data() + first, end - first});
+  }
+}
+
+void MujocoWorld::thinOut(std::span<const std::pair<std::uint64_t, int>> pair) {
+  spare_.resize(pairs_.size());
+  const auto contact = [&](std::size_t i) -> const mjContact& { return d_->contact[pair[i].second]; };
+  // The deepest, then each time the one that is farthest from those that were chosen: what lies on them does not tip.
+  std::size_t next = 0;
+  for (std::size_t i = 1; i < pair.size(); ++i)
+    if (contact(i).dist < contact(next).dist) next = i;
+  apart_.assign(pair.size(), HUGE_VAL);
+  for (int n = 0; n < perPair_; ++n) {
+    apart_[next] = -1;
+    const Vec3 chosen = toVec(contact(next).pos);
+    for (std::size_t i = 0; i < pair.size(); ++i)
+      if (apart_[i] >= 0) apart_[i] = std::min(apart_[i], (toVec(contact(i).pos) - chosen).squaredNorm());
+    next = static_cast<std::size_t>(std::max_element(apart_.begin(), apart_.end()) - apart_.begin());
+  }
+  for (std::size_t i = 0; i < pair.size(); ++i)
+    if (apart_[i] >= 0) spare_[static_cast<std::size_t>(pair[i].second)] = 1;
 }
 
 void MujocoWorld::prepareAgain(const Model& model) {
@@ -345,12 +375,15 @@ void MujocoWorld::prepareAgain(const Model& model) {
   prepare(model);
 }
 
-void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, engine::Contacts& out) {
+void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, int perPair,
+                         engine::Contacts& out) {
   filter_ = filter;
+  perPair_ = perPair;
   take(model, state);
   prepare(model);
   listed_.clear();
   for (int i = 0; i < d_->ncon; ++i) {
+    if (isSpare(i)) continue;
     const mjContact& from = d_->contact[i];
     Index a = geomOf_[from.geom1], b = geomOf_[from.geom2];
     const bool swapped = !engine::comesFirst(model.geoms[a], model.geoms[b]);
@@ -374,7 +407,8 @@ void MujocoWorld::releaseUnsolved(std::span<const Contact> contacts) {
   std::sort(ghosts_.begin(), ghosts_.end());
   for (int i = 0; i < d_->ncon; ++i) {
     const mjContact& c = d_->contact[i];
-    if (c.efc_address < 0 || !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
+    if (c.efc_address < 0) continue;
+    if (!isSpare(i) && !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
     const int rows = c.dim == 1 ? 1 : m_->opt.cone == mjCONE_PYRAMIDAL ? 2 * (c.dim - 1) : c.dim;
     for (int row = c.efc_address; row < c.efc_address + rows; ++row) d_->efc_D[row] = 1e-15, d_->efc_R[row] = 1e15;
   }
@@ -448,7 +482,7 @@ void MujocoWorld::step(engine::Step& step) {
   while (!run(step) && stopped.size() < 2 * step.state.bodies.size()) {
     stopBadTree(step.state, stopped);
     mj_resetData(m_.get(), d_.get());
-    for (const DynamicState& s : step.state.bodies) s.mark = 0;
+    taken_.assign(taken_.size(), 0);
     take(step.model, step.state);
     prepareAgain(step.model);
   }

@@ -23,14 +23,15 @@ Compiled compileWorld(const std::string& mjcf);
 class MujocoWorld {
  public:
   /// `trees` and `compiled` are those of toMjcf() for this model.
-  MujocoWorld(const engine::Model& model, const engine::State& state, Trees trees, Compiled compiled);
+  MujocoWorld(const engine::Model& model, Trees trees, Compiled compiled);
   /// Which pairs of geoms may collide until the next detect().
   void setFilter(engine::PairFilter filter) { filter_ = filter; }
   /// Goes on with another model, of which only those trees move that are unchanged: until it is compiled.
   void bind(const engine::Model& model);
 
-  /// Appends the contacts of the present poses.
-  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, engine::Contacts& out);
+  /// Appends the contacts of the present poses, at most `perPair` of two geoms: the others are not solved.
+  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
+              engine::Contacts& out);
   void step(engine::Step& step);
 
   const Trees& trees() const { return trees_; }
@@ -50,9 +51,11 @@ class MujocoWorld {
   bool take(const engine::Model& model, const engine::State& state);
   void takeLink(const engine::Model& model, const engine::State& state, Index index);
   /// Computes pose and velocity of a connector whose joint belongs to another body in MuJoCo.
-  void giveConnector(const engine::Model& model, engine::State& state, Index index) const;
+  void giveConnector(const engine::Model& model, engine::State& state, Index index);
   /// Writes MuJoCo's poses and velocities to the state.
-  void give(const engine::Model& model, engine::State& state) const;
+  void give(const engine::Model& model, engine::State& state);
+  /// A body's state was written from MuJoCo.
+  void given(engine::State& state, Index body);
   /// Positions, contacts and constraints of the present coordinates.
   void prepare(const engine::Model& model);
   /// The same in a step, where the contacts of the last detect() have another order then: their forces are not read.
@@ -82,6 +85,11 @@ class MujocoWorld {
   bool run(engine::Step& step);
   /// Puts the bodies of the tree whose numbers were bad to rest in the state, without forces, and lists them.
   void stopBadTree(engine::State& state, std::vector<Index>& stopped);
+  /// Finds the contacts beyond `perPair_` of their pair: sets spare_.
+  void findSpare();
+  /// The same for the contacts of one pair, of which there are more.
+  void thinOut(std::span<const std::pair<std::uint64_t, int>> pair);
+  bool isSpare(int contact) const { return !spare_.empty() && spare_[static_cast<std::size_t>(contact)]; }
   /// Takes the force of contacts that are not to be solved.
   void releaseUnsolved(std::span<const engine::Contact> contacts);
   void readContactForces(std::span<engine::Contact> contacts) const;
@@ -98,6 +106,8 @@ class MujocoWorld {
 
   Trees trees_;                       ///< kNone as body and joint of a link: its tree is gone
   std::vector<Origin> origins_;       ///< by link
+  std::vector<std::uint32_t> taken_;  ///< by link: the version of its body's state that is in MuJoCo; 0: none
+  std::vector<Index> linkOf_;         ///< by body; kNone: none
   std::vector<std::uint64_t> geoms_;  ///< by MuJoCo's geom: identity in the model; 0: none
   ModelPointer m_;
   DataPointer d_;
@@ -114,7 +124,11 @@ class MujocoWorld {
   std::vector<int> actuators_;                          ///< by MuJoCo's joint: its actuator; empty: there are none
   std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that joints connect, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
-  std::vector<Wrench> wrenches_;                        ///< of applyForces(), by MuJoCo's body
+  int perPair_ = 16;                                    ///< of the last detect()
+  std::vector<std::uint8_t> spare_;                     ///< by MuJoCo's contact; empty: none is
+  std::vector<std::pair<std::uint64_t, int>> pairs_;    ///< of findSpare(): pair of geoms, contact
+  std::vector<double> apart_;     ///< of thinOut(): squared distance from the chosen ones; -1: is one
+  std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
   // By MuJoCo's body, as compiled: what the model has now may be later.
   std::vector<Vec3> linkOrigins_;       ///< see Body::linkOrigin
   std::vector<std::uint8_t> hasParts_;  ///< it is the first of several parts
@@ -124,7 +138,6 @@ class MujocoWorld {
   std::vector<int> listed_;             ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
-  std::uint32_t mark_;                    ///< see DynamicState::mark
   std::string message_;                   ///< MuJoCo's last one
 };
 

@@ -9,9 +9,8 @@
 #include <sanitizer/tsan_interface.h>
 #endif
 
-namespace spark {
+namespace spark::ode {
 
-using namespace ode;
 using engine::Contact;
 using engine::Index;
 using engine::kNone;
@@ -159,8 +158,7 @@ void setCollides(GeomData& g, bool on) {
 
 // ---- worlds ----
 
-CollisionWorld::CollisionWorld(const Model& m)
-    : model(m.id), exactReplay(m.exactReplay), root(dHashSpaceCreate(nullptr)) {
+CollisionWorld::CollisionWorld(bool replay) : exactReplay(replay), root(dHashSpaceCreate(nullptr)) {
   dSpaceSetCleanup(root, 0);
 }
 
@@ -241,23 +239,18 @@ void followBodies(const CollisionWorld& w, const State& state) {
 
 }  // namespace
 
-void OdeCollision::compile(const Model& model, const State& state) {
-  const MessageCapture capture(messages_.last);
-  auto found = std::find_if(worlds_.begin(), worlds_.end(), [&](const auto& w) { return w->model == model.id; });
-  if (found == worlds_.end()) {
-    worlds_.push_back(std::make_unique<CollisionWorld>(model));
-    found = std::prev(worlds_.end());
-  }
-  CollisionWorld& w = **found;
+void OdeDetector::compile(const Model& model, const State& state, std::span<const Index> edited) {
+  const MessageCapture capture(node_.messages_.last);
+  CollisionWorld& w = world_;
 
   // Removed elements; inner spaces before the spaces around them.
   std::erase_if(w.geoms, [&](const auto& g) {
-    if (engine::contains(model.geoms, g->id)) return false;
+    if (engine::indexOf(model.geoms, g->id) != kNone) return false;
     destroy(*g);
     return true;
   });
   for (std::size_t i = w.spaces.size(); i-- > 0;) {
-    if (engine::contains(model.spaces, w.spaces[i]->id)) continue;
+    if (engine::indexOf(model.spaces, w.spaces[i]->id) != kNone) continue;
     dSpaceDestroy(w.spaces[i]->space);
     w.spaces.erase(w.spaces.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -283,8 +276,8 @@ void OdeCollision::compile(const Model& model, const State& state) {
     }
     w.builtAt = model.structure;
   }
-  // Changed ones. A model that was compiled before lists them.
-  for (const Index i : model.editedGeoms) {
+  // Changed ones.
+  for (const Index i : edited) {
     if (i >= oldGeoms) continue;
     GeomData& g = *w.geoms[i];
     const engine::Geom& from = model.geoms[i];
@@ -304,18 +297,8 @@ void OdeCollision::compile(const Model& model, const State& state) {
     place(g, state);
     setCollides(g, from.collides);
   }
-  if (restructured || !model.editedGeoms.empty()) listByBody(w, model);
-  messages_.report(*this);
-}
-
-void OdeCollision::forget(const Model& model) {
-  std::erase_if(worlds_, [&](const auto& w) { return w->model == model.id; });
-}
-
-CollisionWorld& OdeCollision::world(const Model& model) {
-  for (const auto& w : worlds_)
-    if (w->model == model.id) return *w;
-  throw Error(fmt::format("{}: the world was not compiled", path()));
+  if (restructured || !edited.empty()) listByBody(w, model);
+  node_.messages_.report(node_);
 }
 
 // ---- detection ----
@@ -372,10 +355,10 @@ int collide(const Pair& pair, int max, dContactGeom* found) {
 
 }  // namespace
 
-void OdeCollision::detect(const Model& model, const State& state, engine::PairFilter filter, int perPair,
-                          engine::Contacts& out) {
-  CollisionWorld& w = world(model);
-  const MessageCapture capture(messages_.last);
+void OdeDetector::detect(const Model&, const State& state, engine::PairFilter filter, int perPair,
+                         engine::Contacts& out) {
+  CollisionWorld& w = world_;
+  const MessageCapture capture(node_.messages_.last);
   followBodies(w, state);
 
   // Broad phase: the close pairs, in ODE's order (exact replay) or sorted by age.
@@ -413,7 +396,7 @@ void OdeCollision::detect(const Model& model, const State& state, engine::PairFi
       c.depth = g.depth;
     }
   }
-  messages_.report(*this);
+  node_.messages_.report(node_);
 }
 
-}  // namespace spark
+}  // namespace spark::ode

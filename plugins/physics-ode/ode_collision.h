@@ -22,6 +22,8 @@
 
 namespace spark {
 
+class OdeCollision;
+
 namespace ode {
 
 /// A collision space.
@@ -64,7 +66,7 @@ struct Pair {
 
 /// What is kept for a world.
 struct CollisionWorld {
-  std::uint64_t model;
+  LibraryGuard library;
   bool exactReplay;
   dSpaceID root;  ///< the space around all top-level spaces
   std::vector<std::unique_ptr<SpaceData>> spaces;
@@ -75,11 +77,27 @@ struct CollisionWorld {
   // likewise, in rising order.
   std::vector<engine::Index> firstGeom, geomsOf, firstJoined, joinedTo;
   std::vector<Pair> pairs;  ///< close pairs of the current detect()
-  explicit CollisionWorld(const engine::Model& m);
+  explicit CollisionWorld(bool exactReplay);
   ~CollisionWorld();
   CollisionWorld(const CollisionWorld&) = delete;
   CollisionWorld& operator=(const CollisionWorld&) = delete;
   bool joined(engine::Index a, engine::Index b) const;
+};
+
+/// Finds the contacts of one world.
+class OdeDetector : public engine::IDetector {
+ public:
+  /// `node` owns it.
+  OdeDetector(OdeCollision& node, bool exactReplay) : node_(node), world_(exactReplay) {}
+  void compile(const engine::Model& model, const engine::State& state, std::span<const engine::Index> edited) override;
+  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
+              engine::Contacts& out) override;
+  /// ODE's spaces and geoms, for measurements.
+  const CollisionWorld& world() const { return world_; }
+
+ private:
+  OdeCollision& node_;
+  CollisionWorld world_;
 };
 
 }  // namespace ode
@@ -94,18 +112,14 @@ class OdeCollision : public Leaf, public engine::ICollision {
     d.property("messages", &OdeCollision::messages).doc("Number of error and warning messages from ODE.");
   }
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model& model, const engine::State& state) override;
-  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
-              engine::Contacts& out) override;
-  void forget(const engine::Model& model) override;
-  /// ODE's spaces and geoms of a world, for measurements; virtual, so that programs reach it. Throws Error for a model
-  /// that was not compiled.
-  virtual ode::CollisionWorld& world(const engine::Model& model);
+  std::unique_ptr<engine::IDetector> create(const engine::Model& model) override {
+    return std::make_unique<ode::OdeDetector>(*this, model.exactReplay);
+  }
 
  private:
+  friend class ode::OdeDetector;
   std::int64_t messages() const { return messages_.count; }
-  ode::LibraryGuard library_;
-  std::vector<std::unique_ptr<ode::CollisionWorld>> worlds_;
+  ode::LibraryGuard library_;  // worlds end after it, and have their own
   ode::Messages messages_;
 };
 

@@ -1,23 +1,10 @@
 #pragma once
 /// \file
-/// Dynamics by ODE 0.16 in double precision. ODE's types do not leave this folder.
-///
-/// What this engine does differently from plain ODE, and why:
-///  - State: poses, velocities and forces are copied from the state before a step and back after it, bit for bit. ODE
-///    keeps nothing else of a body from step to step, so a restored world continues with the same bits.
-///  - Auto-disable is switched off: the physics server does it, with counters that are part of the state.
-///  - Large islands: the time of the direct solver grows with the cube of an island's constraints; thirty robots that
-///    are created in one place would take minutes. Islands of more than `directRows` rows are solved by ODE's iterative
-///    solver (ode_islands.cpp).
-///
-///     state -> ODE -> contact joints -> dWorldStep (large islands: dWorldQuickStep) -> state, feedback
-
-#include <memory>
-#include <vector>
+/// ODE as an engine.
 
 #include "api/engine.h"
 #include "ode_process.h"
-#include "ode_world.h"
+#include "ode_solver.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 
@@ -42,29 +29,20 @@ class OdeEngine : public Node, public engine::IEngine {
   }
 
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model& model, const engine::State& state) override;
-  void step(engine::Step& step) override;
-  void forget(const engine::Model& model) override;
-  /// ODE's world, for measurements; virtual, so that programs reach it. Throws Error for a model that was not compiled.
-  virtual ode::WorldData& world(const engine::Model& model);
+  std::unique_ptr<engine::ISolver> create(const engine::Model& model) override {
+    return std::make_unique<ode::OdeSolver>(*this, model.exactReplay);
+  }
 
  private:
+  friend class ode::OdeSolver;
   std::string version() const { return dGetConfiguration(); }
   std::int64_t messages() const { return messages_.count; }
   std::int64_t approximateSteps() const { return approximateSteps_; }
-  /// Runs ODE's solvers: the direct one, and the iterative one for islands that are too large for it.
-  void solveIslands(ode::WorldData& w, const engine::Step& step);
-  /// The same, and lists the bodies that were moved.
-  void solve(ode::WorldData& w, const engine::Step& step);
-  /// Runs dWorldStep, with the islands distributed over the kernel's threads.
-  void solveDirectly(ode::WorldData& w, double dt);
 
-  ode::LibraryGuard library_;
-  std::vector<std::unique_ptr<ode::WorldData>> worlds_;
+  ode::LibraryGuard library_;  // worlds end after it, and have their own
   ode::Messages messages_;
   std::int64_t approximateSteps_ = 0;
   int directRows_ = 1200;
-  bool armatureSaid_ = false;
 };
 
 }  // namespace spark

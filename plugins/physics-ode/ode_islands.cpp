@@ -13,13 +13,12 @@
 //     the iterative solver with only these. Excluded bodies are disabled for ODE. Islands do not touch each other, so
 //     ODE does not wake them.
 
-namespace spark {
+namespace spark::ode {
 
-using namespace ode;
 using engine::Index;
 using engine::kNone;
 
-int ode::rowsOf(engine::JointType type) {
+int rowsOf(engine::JointType type) {
   switch (type) {
     case engine::JointType::ball:
     case engine::JointType::angularMotor:
@@ -131,45 +130,49 @@ constexpr std::size_t kParallelBodies = 40;
 
 }  // namespace
 
-void OdeEngine::solveDirectly(WorldData& w, double dt) {
+void OdeSolver::solveDirectly(double dt) {
+  WorldData& w = world_;
   w.threads->setParallel(w.awake >= kParallelBodies);
   // In one thread ODE's callback tells the order.
   w.listOrder = w.exactReplay && !w.threads->parallel();
   if (w.exactReplay && !w.listOrder) findOrder(w);
   dWorldStep(w.id, dt);
-  w.threads->takeMessage(messages_.last);
+  w.threads->takeMessage(engine_.messages_.last);
 }
 
-void OdeEngine::solve(WorldData& w, const engine::Step& step) {
+void OdeSolver::solve(const engine::Step& step) {
+  WorldData& w = world_;
   w.order.clear();
-  solveIslands(w, step);
+  solveIslands(step);
   if (w.exactReplay) return;  // where alone the order counts
   for (Index i = 0; i < w.bodies.size(); ++i)
     if (w.enabled[i] && step.steps(i)) w.order.push_back(i);
 }
 
-void OdeEngine::solveIslands(WorldData& w, const engine::Step& step) {
+void OdeSolver::solveIslands(const engine::Step& step) {
+  WorldData& w = world_;
+  const int directRows = engine_.directRows_;
   // Rows of the largest awake island; 0 when none can be too large.
   int largest = 0;
-  if (maxIslandRows(w, step.model) > directRows_) {
+  if (maxIslandRows(w, step.model) > directRows) {
     findIslands(w, step);
     for (Index i = 0; i < w.bodies.size(); ++i)
       if (enabled(w, i)) largest = std::max(largest, rowsAt(w, i));
   }
-  if (largest <= directRows_) return solveDirectly(w, step.dt);
-  if (++approximateSteps_ == 1)
-    kernel().log().info(
+  if (largest <= directRows) return solveDirectly(step.dt);
+  if (++engine_.approximateSteps_ == 1)
+    engine_.kernel().log().info(
         "{}: an island has {} constraint rows, more than the direct solver accepts (directRows: {}). Such islands are "
         "solved approximately. Do robots overlap?",
-        path(), largest, directRows_);
+        engine_.path(), largest, directRows);
 
   // The direct solver, without the large islands.
-  exclude(w, directRows_, true);
-  solveDirectly(w, step.dt);
+  exclude(w, directRows, true);
+  solveDirectly(step.dt);
   include(w);
 
   // The iterative solver with only these, in one thread and always with the same seed.
-  exclude(w, directRows_, false);
+  exclude(w, directRows, false);
   {
     const std::lock_guard lock(quickStepMutex());
     dRandSetSeed(1);
@@ -181,4 +184,4 @@ void OdeEngine::solveIslands(WorldData& w, const engine::Step& step) {
   include(w);
 }
 
-}  // namespace spark
+}  // namespace spark::ode

@@ -10,6 +10,7 @@
 
 #include "api/engine.h"
 #include "ode_numbers.h"
+#include "ode_process.h"
 #include "ode_threads.h"
 
 namespace spark::ode {
@@ -23,6 +24,7 @@ struct BodyData {
   double mass = 0;  ///< as passed to ODE, with the inertia
   Mat3 inertia = Mat3::Zero();
   bool gravity = true;
+  std::uint32_t version = 0;          ///< of the state that ODE has, see DynamicState::version; 0: of none
   std::uint64_t lastContactStep = 0;  ///< number of the last step with a contact
   int staticRows = 0;                 ///< constraint rows of its contacts with static geoms, in step lastContactStep
   std::uint64_t visitedStep = 0;      ///< number of the last step in which the order of bodies was found
@@ -44,7 +46,7 @@ struct JointData {
 
 /// A world of ODE. The elements are as in the model.
 struct WorldData {
-  std::uint64_t model;
+  LibraryGuard library;
   dWorldID id;
   std::unique_ptr<IslandThreads> threads;
   dJointGroupID contactJoints;  ///< contact joints of the current step
@@ -59,7 +61,6 @@ struct WorldData {
   std::vector<std::uint8_t> needed;                 ///< by body: it is awake, or connected to one that is
   std::vector<std::uint8_t> enabled;                ///< by body: as in ODE
   std::size_t awake = 0;                            ///< number of bodies that are awake before the step
-  std::uint32_t mark = 0;                           ///< of this world, see DynamicState::mark
   engine::State* state = nullptr;                   ///< during a step
 
   // Constraint rows of this step's contacts, for the bound on the size of islands.
@@ -76,7 +77,7 @@ struct WorldData {
   std::vector<engine::Index> order;       ///< the bodies that a step moves, in the order in which ODE moves them
   bool listOrder = false;                 ///< ODE's callback lists them
 
-  WorldData(const engine::Model& m, Jobs& jobs);
+  WorldData(bool exactReplay, Jobs& jobs);
   ~WorldData();
   WorldData(const WorldData&) = delete;
   WorldData& operator=(const WorldData&) = delete;

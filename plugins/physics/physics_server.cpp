@@ -48,7 +48,7 @@ void PhysicsServer::expectEngines() const {
                               name, className));
   };
   expect(static_cast<bool>(engine_), "engine", "engine", "OdeEngine");
-  expect(static_cast<bool>(collision_), "collision detection", "collision", "OdeCollision");
+  expect(collision_ || engine_->capabilities().detects, "collision detection", "collision", "OdeCollision");
 }
 
 World* PhysicsServer::findWorld() {
@@ -148,7 +148,7 @@ void PhysicsServer::shiftSurroundings() {
 
 void PhysicsServer::physics(const Event& event) {
   if (event.step <= 0 || !refresh()) return;
-  if (!engine_ || !collision_) return lacksEngines();
+  if (!hasEngines()) return lacksEngines();
   lacking_ = false;
   const InUse stepping(*this, "a step is under way");
   if (scene_) scene_->place();
@@ -162,16 +162,17 @@ void PhysicsServer::physics(const Event& event) {
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldModel> world = world_->model();
   engine::IEngine& engine = *engine_;
-  engine::ICollision& collision = *collision_;
-  const InUse solving(engine.leaf(), "a step is under way"), detecting(collision.leaf(), "a step is under way");
-  const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.usualStep();
+  engine::ICollision* const collision = collision_.get();
+  const InUse solving(engine.leaf(), "a step is under way");
+  const InUse detecting(collision ? collision->leaf() : engine.leaf(), "a step is under way");
+  const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.capabilities().usualStep;
   const int steps = usual > 0 ? static_cast<int>(std::clamp(std::round(event.step / usual), 1.0, 1000.0)) : 1;
   world->keepForces(steps > 1);
   for (int i = 0; i < steps; ++i) {
     // Contacts and their handlers.
     contacts_.clear();
     contactsAt_ = kernel().structureVersion();
-    world->detect(collision, physics::pairCounts, contactsPerPair_, contacts_);
+    world->detect(engine, collision, physics::pairCounts, contactsPerPair_, contacts_);
     physics::runHandlers(contacts_, kernel());
 
     // One step. Handlers must not see feedback that only measureForces requested.

@@ -67,6 +67,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void shiftSurroundings();
   /// Logs the bodies that had to be reset.
   void reportFaults();
+  bool hasEngines() const { return engine_ && (collision_ || engine_->capabilities().detects); }
   /// Logs once that the world cannot be stepped.
   void lacksEngines();
   bool defaultOnTransform() const { return defaultOnTransform_; }

@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <atomic>
 
 #include "shapes.h"
 
@@ -17,12 +16,6 @@ using engine::ShapeDescription;
 
 namespace {
 
-/// Identities of worlds. Never reused, so that an engine does not take one world for another.
-std::uint64_t nextWorld() {
-  static std::atomic<std::uint64_t> worlds = 0;
-  return ++worlds;
-}
-
 /// A new index after compact().
 void remap(Index& index, const std::vector<Index>& now) {
   if (index != kNone) index = now[index];
@@ -35,14 +28,8 @@ void remap(std::vector<Index>& list, const std::vector<Index>& now) {
 }  // namespace
 
 WorldModel::WorldModel(bool exactReplay) {
-  model_.id = nextWorld();
   model_.exactReplay = exactReplay;
   setParameters({});
-}
-
-WorldModel::~WorldModel() {
-  collision_.forget(model_);
-  engine_.forget(model_);
 }
 
 void WorldModel::setParameters(const engine::WorldParameters& p) {
@@ -130,7 +117,7 @@ void WorldModel::setPosition(BodyHandle body, const Vec3& wanted) {
   const Index i = bodies_[body];
   ++poses_;
   state_.bodies[i].position = watch_[i].validPosition = rounded(wanted);
-  state_.bodies[i].mark = 0;
+  ++state_.bodies[i].version;
   state_.markMoved(i);
 }
 
@@ -160,20 +147,20 @@ void WorldModel::setRotation(BodyHandle body, const Mat3& wanted) {
   const Index i = bodies_[body];
   state_.bodies[i].rotation = orthogonalized(r);
   state_.bodies[i].quaternion = watch_[i].validQuaternion = normalized(quaternionOf(r));
-  state_.bodies[i].mark = 0;
+  ++state_.bodies[i].version;
   state_.markMoved(i);
 }
 
 void WorldModel::setLinearVelocity(BodyHandle body, const Vec3& wanted) {
   if (!inRange(wanted)) return;
   of(body).linearVelocity = rounded(wanted);
-  of(body).mark = 0;
+  ++of(body).version;
 }
 
 void WorldModel::setAngularVelocity(BodyHandle body, const Vec3& wanted) {
   if (!inRange(wanted)) return;
   of(body).angularVelocity = rounded(wanted);
-  of(body).mark = 0;
+  ++of(body).version;
 }
 
 void WorldModel::addForce(BodyHandle body, const Vec3& wanted) {
@@ -275,7 +262,7 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
     s.rotation.row(row) = Vec3(numbers[0], numbers[1], numbers[2]);
   }
   for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) take(v->data(), 3);
-  s.mark = 0;
+  ++s.version;
   ++poses_;
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
@@ -312,7 +299,7 @@ void WorldModel::destroyGeom(GeomHandle geom) {
 
 void WorldModel::markEdited(Index geom) {
   ++model_.collision;
-  if (!std::exchange(geomEdited_[geom], 1)) model_.editedGeoms.push_back(geom);
+  if (!std::exchange(geomEdited_[geom], 1)) edited_.push_back(geom);
 }
 
 void WorldModel::setShape(GeomHandle geom, const ShapeDescription& shape) {
@@ -366,7 +353,7 @@ void WorldModel::compact() {
     for (engine::Space& s : model_.spaces) remap(s.parent, now);
     for (engine::Geom& g : model_.geoms) remap(g.space, now);
   }
-  if (geoms_.removed() > 0) remap(model_.editedGeoms, geoms_.compact(model_.geoms, geomEdited_));
+  if (geoms_.removed() > 0) remap(edited_, geoms_.compact(model_.geoms, geomEdited_));
   if (joints_.removed() > 0) {
     const std::vector<Index> now =
         joints_.compact(model_.joints, model_.mujocoAxes, state_.joints, state_.coordinates, state_.motors, angles_);
@@ -386,34 +373,37 @@ void WorldModel::compactWhenMany() {
 
 // ---- steps ----
 
-template <class Interface>
-void WorldModel::Compiled<Interface>::bring(Interface& e, const engine::Model& model, const engine::State& state,
-                                            std::uint64_t version) {
-  if (leaf.get() != &e.leaf()) {
-    forget(model);
-    leaf = Ref<Leaf>(&e.leaf());
-    engine = &e;
-    structure = part = UINT64_MAX;  // should the first compile() throw
-  } else if (structure == model.structure && part == version) {
-    return;
-  }
-  e.compile(model, state);
+template <class Maker>
+template <class F>
+typename Maker::Part& WorldModel::Compiled<Maker>::bring(Maker& maker, const engine::Model& model,
+                                                         std::uint64_t version, F&& compile) {
+  const bool fresh = attached.startsAnew(maker);
+  auto& made = attached.of(maker, model);
+  if (fresh) structure = part = UINT64_MAX;  // should the first compile() throw
+  if (structure == model.structure && part == version) return made;
+  compile(made);
   structure = model.structure;
   part = version;
+  return made;
 }
 
-template <class Interface>
-void WorldModel::Compiled<Interface>::forget(const engine::Model& model) {
-  if (leaf) engine->forget(model);
-  leaf = {};
+engine::ISolver& WorldModel::solver(engine::IEngine& engine) {
+  // One that detects contacts has geoms, too.
+  const std::uint64_t version = model_.dynamics + (engine.capabilities().detects ? model_.collision : 0);
+  return engine_.bring(engine, model_, version, [&](engine::ISolver& s) { s.compile(model_, state_); });
 }
 
-void WorldModel::detect(engine::ICollision& collision, engine::PairFilter filter, int perPair, engine::Contacts& out) {
+void WorldModel::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
+                        engine::Contacts& out) {
   compact();
-  collision_.bring(collision, model_, state_, model_.collision);
-  for (const Index g : model_.editedGeoms) geomEdited_[g] = 0;
-  model_.editedGeoms.clear();
-  collision.detect(model_, state_, filter, perPair, out);
+  const auto compile = [&](engine::IDetector& d) { d.compile(model_, state_, edited_); };
+  engine::IDetector* const own = engine.capabilities().detects ? solver(engine).detector() : nullptr;
+  if (own || collision) {
+    engine::IDetector& detector = own ? *own : collision_.bring(*collision, model_, model_.collision, compile);
+    detector.detect(model_, state_, filter, perPair, out);
+  }
+  for (const Index g : edited_) geomEdited_[g] = 0;
+  edited_.clear();
   for (const Index i : state_.moved) state_.bodies[i].moved = false;
   state_.moved.clear();
 }
@@ -443,7 +433,7 @@ void WorldModel::putToSleep(const engine::Contacts& contacts, double dt) {
     s.awake = false;
     s.linearVelocity.setZero();
     s.angularVelocity.setZero();
-    s.mark = 0;
+    ++s.version;
   }
 }
 
@@ -468,21 +458,22 @@ void WorldModel::repeatForces() {
 
 void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, double dt) {
   compact();
-  engine_.bring(engine, model_, state_, model_.dynamics);
+  engine::ISolver& solver = WorldModel::solver(engine);
+  const engine::Capabilities can = engine.capabilities();
   ++steps_;
   const bool first = !std::exchange(again_, false);
   if (first) repaired_.clear();
   if (std::none_of(state_.bodies.begin(), state_.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
   // Sleep counts steps of the simulation.
-  if (first && model_.parameters.autoDisable && engine.sleeps()) putToSleep(contacts, dt);
-  if (!engine.controls()) applyControls();
-  if (!engine.damps() && damped_) applyDamping();
-  if (!engine.springs() && sprung_) applySprings();
-  if (!engine.dampsBodies() && bodiesDamped_) applyBodyDamping(dt);
+  if (first && model_.parameters.autoDisable && can.sleeps) putToSleep(contacts, dt);
+  if (!can.controls) applyControls();
+  if (!can.damping && damped_) applyDamping();
+  if (!can.springs && sprung_) applySprings();
+  if (!can.bodyDamping && bodiesDamped_) applyBodyDamping(dt);
   if (turningAt_ != model_.structure) listTurning();
   if (countedAt_ != poses_) countTurns();  // poses were set since the last step
   engine::Step step{model_, state_, contacts, rounded(dt), {}};
-  engine.step(step);
+  solver.step(step);
   ++poses_;
   checkBodies();
   countTurns();
@@ -504,7 +495,7 @@ void WorldModel::checkBodies() {
     s.rotation = rotationOf(s.quaternion);
     s.linearVelocity.setZero();
     s.angularVelocity.setZero();
-    s.mark = 0;
+    ++s.version;
     state_.markMoved(i);
     repaired_.push_back(bodies_.handleOf(i));
   }

@@ -83,7 +83,6 @@ class WorldModel {
  public:
   /// See Model::exactReplay.
   explicit WorldModel(bool exactReplay = false);
-  ~WorldModel();
   WorldModel(const WorldModel&) = delete;
   WorldModel& operator=(const WorldModel&) = delete;
 
@@ -215,8 +214,10 @@ class WorldModel {
   std::uint64_t poses() const { return poses_; }
   engine::Index index(JointHandle joint) const { return joints_[joint]; }
 
-  /// Detects contacts: see ICollision::detect().
-  void detect(engine::ICollision& collision, engine::PairFilter filter, int perPair, engine::Contacts& out);
+  /// Detects contacts: see IDetector::detect(). `collision` is used unless the engine detects them itself; otherwise it
+  /// may be nullptr.
+  void detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
+              engine::Contacts& out);
   /// Puts bodies that have been idle long enough to sleep, steps the world, and puts bodies whose state is no number or
   /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
   /// removed since.
@@ -245,15 +246,16 @@ class WorldModel {
     double angle = 0;
     std::uint64_t at = 0;
   };
-  /// An engine that has compiled the model, and the versions that it has.
-  template <class Interface>
+  /// What steps the model, or finds its contacts, and the versions of the model that it has compiled.
+  template <class Maker>
   struct Compiled {
-    Ref<Leaf> leaf;
-    Interface* engine = nullptr;
+    engine::Attached<Maker> attached;
     std::uint64_t structure = 0, part = 0;
-    void bring(Interface& e, const engine::Model& model, const engine::State& state, std::uint64_t version);
-    void forget(const engine::Model& model);
+    /// Calls compile(the part) unless it has this version. Returns the part.
+    template <class F>
+    typename Maker::Part& bring(Maker& maker, const engine::Model& model, std::uint64_t version, F&& compile);
   };
+  engine::ISolver& solver(engine::IEngine& engine);
 
   engine::DynamicState& of(BodyHandle body) { return state_.bodies[bodies_[body]]; }
   const engine::DynamicState& of(BodyHandle body) const { return state_.bodies[bodies_[body]]; }
@@ -331,7 +333,8 @@ class WorldModel {
   Handles<SpaceHandle> spaces_;
   Handles<GeomHandle> geoms_;
   Handles<JointHandle> joints_;
-  std::vector<std::uint8_t> geomEdited_;                 ///< by geom: it is in Model::editedGeoms
+  std::vector<engine::Index> edited_;                    ///< the geoms that were edited since the last detect()
+  std::vector<std::uint8_t> geomEdited_;                 ///< by geom: it is in `edited_`
   std::vector<Watch> watch_;                             ///< by body
   mutable std::vector<CachedAngle> angles_;              ///< by joint
   std::uint64_t poses_ = 1;                              ///< see poses()

@@ -60,14 +60,24 @@ IPhysicsServer& serverOf(Instance& instance) {
 const std::vector<AgentAspect*>& agentsOf(Instance& instance) {
   return instance.kernel().root().require<IGameControl>("/sys/server/gamecontrol").agents();
 }
+
+/// What a node has made for the only world.
+template <class Part, class Maker>
+const Part& partOf(const Maker& maker) {
+  if (maker.parts().size() != 1) throw Error(fmt::format("expected one world, found {}", maker.parts().size()));
+  return static_cast<const Part&>(*maker.parts().front());
+}
 }  // namespace
 
 // ---- taking over an instance ----
 
 RawWorld::Source::Source(Instance& instance)
     : model(serverOf(instance).model()),
-      dynamics(instance.kernel().root().require<OdeEngine>("/sys/server/physics/engine").world(model)),
-      collision(instance.kernel().root().require<OdeCollision>("/sys/server/physics/collision").world(model)) {
+      dynamics(
+          partOf<ode::OdeSolver>(instance.kernel().root().require<OdeEngine>("/sys/server/physics/engine")).world()),
+      collision(
+          partOf<ode::OdeDetector>(instance.kernel().root().require<OdeCollision>("/sys/server/physics/collision"))
+              .world()) {
   const auto expect = [&](const char* what, std::size_t found, std::size_t wanted) {
     if (found != wanted)
       throw Error(fmt::format("{}: expected {} {} in ODE as in the model, found {}", instance.world().name, wanted,

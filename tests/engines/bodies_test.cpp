@@ -23,7 +23,7 @@ TEST_CASE("a force acts for one step and accelerates by force / mass, and gravit
     w.world.addTorque(heavy, {0, 0, 1});
     w.run(0.01);
     CHECK(w.velocity(heavy).x() == Approx(0.02));
-    if (w.kind.rotation) CHECK(w.spin(heavy).z() == Approx(0.02));
+    if (w.can.rotation) CHECK(w.spin(heavy).z() == Approx(0.02));
     CHECK(std::abs(w.velocity(heavy).z()) < 1e-12);
     CHECK(w.velocity(falling).z() < 0);
     CHECK(w.world.force(heavy).isZero(0));
@@ -43,7 +43,7 @@ TEST_CASE("a torque-free body that spins about its axis of symmetry keeps its an
         const Vec3 x = w.world.state(b).rotation.col(0);
         CHECK(std::atan2(x.y(), x.x()) == Approx(5 - 2 * kPi).margin(0.02));
       },
-      {&EngineKind::rotation});
+      {&engine::Capabilities::rotation});
 }
 
 TEST_CASE("damping slows a free body, and does not turn it back however strong it is") {
@@ -61,7 +61,7 @@ TEST_CASE("damping slows a free body, and does not turn it back however strong i
     w.run(0.5 - w.dt);
     CHECK(w.velocity(weak).x() == Approx(std::exp(-3.0 / 2 * 0.5)).epsilon(0.02));
     CHECK(w.velocity(strong).isZero(1e-9));
-    if (!w.kind.rotation) return;
+    if (!w.can.rotation) return;
     CHECK(w.spin(weak).z() == Approx(2 * std::exp(-0.2 / 0.1 * 0.5)).epsilon(0.02));
     CHECK(w.spin(strong).isZero(1e-9));
   });
@@ -80,7 +80,7 @@ TEST_CASE("strong damping beside the centre of mass holds the point that it acts
         CHECK((w.velocity(rod) + w.spin(rod).cross(at)).norm() < 0.02);
         CHECK(w.velocity(rod).norm() < 1);
       },
-      {&EngineKind::rotation});
+      {&engine::Capabilities::rotation});
 }
 
 TEST_CASE("damping of a body acts at the origin of its link's frame") {
@@ -96,7 +96,7 @@ TEST_CASE("damping of a body acts at the origin of its link's frame") {
         CHECK(w.velocity(b).y() == Approx(1 - 0.5 * w.dt).epsilon(1e-3));
         CHECK(w.spin(b).z() == Approx(-2.5 * w.dt).epsilon(0.03));
       },
-      {&EngineKind::rotation});
+      {&engine::Capabilities::rotation});
 }
 
 TEST_CASE("a body that diverges is put back at rest and reported once, and the others continue") {
@@ -136,7 +136,7 @@ TEST_CASE("a resting body falls asleep and wakes on contact, and a floating body
         w.run(0.2);
         CHECK(w.world.enabled(lying));
       },
-      {&EngineKind::sleep});
+      {&engine::Capabilities::sleeps});
 }
 
 TEST_CASE("a restored world continues bit for bit, in the same kernel and in a new one") {
@@ -171,5 +171,5 @@ TEST_CASE("a restored world continues bit for bit, in the same kernel and in a n
         other.run(2);
         CHECK(other.saved(twins) == end);
       },
-      {&EngineKind::restores});
+      {&engine::Capabilities::restores});
 }

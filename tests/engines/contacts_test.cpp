@@ -1,3 +1,4 @@
+#include <map>
 #include <set>
 
 #include "engine_world.h"
@@ -6,6 +7,37 @@
 
 using namespace spark;
 using namespace spark::test;
+
+TEST_CASE("two colliders have at most contactsPerPair contacts, and a box rests on two of them") {
+  withEngines([](EngineWorld& w) {
+    w.ground();
+    w.block({0, 0, 0.499}, {1, 1, 1});
+    w.block({0, 0, 1.497}, {1, 1, 1});
+    for (const int most : {1, 2, 4, 16}) {
+      w.contacts.clear();
+      w.world.detect(*w.engine, w.collision, nullptr, most, w.contacts);
+      std::map<std::pair<engine::Index, engine::Index>, int> count;
+      for (const engine::Contact& c : w.contacts) ++count[{c.geomA, c.geomB}];
+      REQUIRE(count.size() == 2);
+      for (const auto& [pair, n] : count) CHECK((most < 4 ? n == most : n >= 4 && n <= most));
+    }
+  });
+}
+
+TEST_CASE("contacts beyond contactsPerPair have no effect") {
+  withEngines([](EngineWorld& w) {
+    if (!w.can.rotation) return;
+    w.ground();
+    const BodyHandle b = w.block({0, 0, 0.499}, {1, 1, 1});
+    for (int i = 0; i < 5; ++i) {
+      w.contacts.clear();
+      w.world.detect(*w.engine, w.collision, nullptr, 1, w.contacts);
+      for (engine::Contact& c : w.contacts) c.solve = true;
+      w.world.step(*w.engine, w.contacts, w.dt);
+    }
+    CHECK(w.spin(b).norm() > 0.01);  // it stands on one corner, and tips over
+  });
+}
 
 TEST_CASE("friction decelerates a sliding box until it stops") {
   withEngines(
@@ -21,7 +53,7 @@ TEST_CASE("friction decelerates a sliding box until it stops") {
         CHECK(w.velocity(b).norm() < 0.01);
         CHECK(w.position(b).x() == Approx(9 / (2 * 0.4 * 9.81)).epsilon(0.03));
       },
-      {&EngineKind::surfaces});
+      {&engine::Capabilities::surfaces});
 }
 
 TEST_CASE("a stack of boxes is stable, and its contacts carry the weight above them") {
@@ -67,7 +99,7 @@ TEST_CASE("a ball bounces to the height that its restitution gives") {
           CHECK(highest - 0.1 == Approx(bounce * bounce).margin(0.03));
         }
       },
-      {&EngineKind::surfaces});
+      {&engine::Capabilities::surfaces});
 }
 
 TEST_CASE("the parts of a body do not collide with each other, and fall as one") {
@@ -190,5 +222,5 @@ TEST_CASE(
           w.world.destroyJoint(last);
           CHECK(pairs(w) == std::pair{true, true});
         },
-        {&EngineKind::joints});
+        {&engine::Capabilities::joints});
 }

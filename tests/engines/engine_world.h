@@ -18,18 +18,10 @@ using physics::BodyHandle;
 using physics::GeomHandle;
 using physics::JointHandle;
 
-/// An engine and the features that it supports.
+/// An engine that is tested.
 struct EngineKind {
   const char* name;  ///< its class
   const char* plugin;
-  bool rotation = true;  ///< bodies rotate
-  bool joints = true;
-  bool loops = true;        ///< joints may close loops, and angular motors may drive other joints
-  bool jointForces = true;  ///< joints measure their load
-  bool armature = false;    ///< joints have the inertia of their rotors
-  bool sleep = true;        ///< bodies at rest fall asleep
-  bool surfaces = true;     ///< each contact has its own surface parameters
-  bool restores = true;     ///< a restored world continues bit for bit
   bool built() const {
     return std::string(plugin) == "point-masses" ||
            std::filesystem::exists(pluginFolder() / (std::string(plugin) + ".so"));
@@ -38,28 +30,17 @@ struct EngineKind {
 
 /// All engines. The last one is an example of a minimal engine.
 inline const EngineKind kEngines[] = {
-    {.name = "OdeEngine", .plugin = "physics-ode"},
-    {.name = "ArticulatedEngine", .plugin = "physics-articulated", .armature = true},
-    {.name = "MujocoEngine",
-     .plugin = "physics-mujoco",
-     .loops = false,
-     .jointForces = false,
-     .armature = true,
-     .sleep = false,
-     .surfaces = false,
-     .restores = false},
-    {.name = "PointMassEngine",
-     .plugin = "point-masses",
-     .rotation = false,
-     .joints = false,
-     .loops = false,
-     .jointForces = false},
+    {"OdeEngine", "physics-ode"},
+    {"ArticulatedEngine", "physics-articulated"},
+    {"MujocoEngine", "physics-mujoco"},
+    {"PointMassEngine", "point-masses"},
 };
 
 struct EngineWorld : TestHost {
   const EngineKind& kind;
-  engine::ICollision* collision;
+  engine::ICollision* collision = nullptr;  ///< nullptr: the engine detects contacts
   engine::IEngine* engine;
+  engine::Capabilities can;
   physics::WorldModel world;
   physics::SpaceHandle space;
   engine::Contacts contacts;
@@ -74,24 +55,22 @@ struct EngineWorld : TestHost {
     makeCollision();
     setGravity(9.81);
   }
-  /// Uses the engine's own collision detection, or ODE's if it has none.
+  /// ODE's collision detection, unless the engine has its own.
   void makeCollision() {
-    collision = engine->leaf().as<engine::ICollision>();
-    if (!collision) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
+    if (!can.detects) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
   }
   void makeEngine() {
     engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
+    can = engine->capabilities();
     if (std::string(kind.name) == "ArticulatedEngine") kernel.create("OdeEngine", "/sys/engine/deferred");
   }
   /// Replaces the engine by a new one.
   void replaceEngine() {
-    const bool both = &collision->leaf() == &engine->leaf();
     engine->leaf().parent()->remove(engine->leaf());
     makeEngine();
-    if (both) makeCollision();
   }
   void replaceCollision() {
-    if (&collision->leaf() == &engine->leaf()) return replaceEngine();
+    if (!collision) return replaceEngine();
     collision->leaf().parent()->remove(collision->leaf());
     makeCollision();
   }
@@ -151,7 +130,7 @@ struct EngineWorld : TestHost {
 
   void detect() {
     contacts.clear();
-    world.detect(*collision, nullptr, 4, contacts);
+    world.detect(*engine, collision, nullptr, 4, contacts);
     for (engine::Contact& c : contacts) {
       c.solve = c.bodyA != engine::kNone || c.bodyB != engine::kNone;
       c.feedback = true;
@@ -175,14 +154,14 @@ struct EngineWorld : TestHost {
   }
 };
 
-/// Runs a test with each engine that has the features `needs`.
+/// Runs a test with each engine that has the capabilities `needs`.
 template <class F>
-void withEngines(F&& f, std::initializer_list<bool EngineKind::*> needs = {}) {
+void withEngines(F&& f, std::initializer_list<bool engine::Capabilities::*> needs = {}) {
   for (const EngineKind& kind : kEngines) {
-    if (!kind.built() || !std::all_of(needs.begin(), needs.end(), [&](auto need) { return kind.*need; })) continue;
+    if (!kind.built()) continue;
     INFO(kind.name);
     EngineWorld w(kind);
-    f(w);
+    if (std::all_of(needs.begin(), needs.end(), [&](auto need) { return w.can.*need; })) f(w);
   }
 }
 

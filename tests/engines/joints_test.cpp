@@ -23,7 +23,7 @@ struct Pair {
 };
 
 void withPairs(const std::function<void(EngineWorld&, Pair&)>& f,
-               std::initializer_list<bool EngineKind::*> needs = {&EngineKind::joints}) {
+               std::initializer_list<bool engine::Capabilities::*> needs = {&engine::Capabilities::joints}) {
   withEngines(
       [&](EngineWorld& w) {
         Pair pair(w);
@@ -139,7 +139,7 @@ TEST_CASE("an angular motor drives its axes") {
         CHECK(w.spin(p.child).z() == Approx(1.5).epsilon(0.02));
         CHECK(std::abs(w.spin(p.child).x()) < 0.02);
       },
-      {&EngineKind::joints, &EngineKind::loops});
+      {&engine::Capabilities::joints, &engine::Capabilities::loops});
 }
 
 TEST_CASE("a hanging closed loop of bodies holds together") {
@@ -160,7 +160,7 @@ TEST_CASE("a hanging closed loop of bodies holds together") {
           CHECK((a.position + a.rotation * j.anchorA - b.position - b.rotation * j.anchorB).norm() < 0.02);
         }
       },
-      {&EngineKind::joints, &EngineKind::loops});
+      {&engine::Capabilities::joints, &engine::Capabilities::loops});
 }
 
 TEST_CASE("a joint's feedback is the force that it carries") {
@@ -181,7 +181,7 @@ TEST_CASE("a joint's feedback is the force that it carries") {
           CHECK((worldFirst ? f2 : f1).z() == Approx(2 * 9.81).epsilon(0.01));
         }
       },
-      {&EngineKind::joints, &EngineKind::jointForces});
+      {&engine::Capabilities::joints, &engine::Capabilities::jointForces});
 }
 
 TEST_CASE("a controller moves its axis to the target with at most its maximum force") {
@@ -234,7 +234,7 @@ TEST_CASE("damping slows an axis, dry friction holds it, and armature adds inert
         w.run(1);
         CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.01));  // 0.2 Nm for 1 s on 0.1 + 0.3 kg m^2
       },
-      {&EngineKind::joints, &EngineKind::armature});
+      {&engine::Capabilities::joints, &engine::Capabilities::armature});
 }
 
 TEST_CASE("the damping of a ball joint acts about all directions, that of a body in the world") {
@@ -329,7 +329,7 @@ TEST_CASE("a removed controller has no effect, and a controller accumulates no t
         CHECK_FALSE(w.world.enabled(p.child));
         CHECK(w.world.torque(p.child).norm() < 1);
       },
-      {&EngineKind::joints, &EngineKind::sleep});
+      {&engine::Capabilities::joints, &engine::Capabilities::sleeps});
 }
 
 TEST_CASE("the armature of a slider between two rotating bodies adds no energy") {
@@ -351,5 +351,5 @@ TEST_CASE("the armature of a slider between two rotating bodies adds no energy")
         CHECK(std::abs(w.world.angleRate(j, 0)) < 0.06);
         CHECK(w.spin(a).y() == Approx(0.5).epsilon(0.05));
       },
-      {&EngineKind::joints, &EngineKind::armature});
+      {&engine::Capabilities::joints, &engine::Capabilities::armature});
 }

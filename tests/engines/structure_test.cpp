@@ -86,7 +86,7 @@ TEST_CASE("contacts can be removed between detection and step") {
         w.world.step(*w.engine, w.contacts, w.dt);
         CHECK(w.velocity(resting).z() < 0);
       },
-      {&EngineKind::surfaces});
+      {&engine::Capabilities::surfaces});
 }
 
 TEST_CASE("the engine and the collision detection can be replaced at any time, and the world continues bit for bit") {
@@ -103,7 +103,7 @@ TEST_CASE("the engine and the collision detection can be replaced at any time, a
           REQUIRE(w.saved(changed.bodies) == other.saved(same.bodies));
         }
       },
-      {&EngineKind::restores});
+      {&engine::Capabilities::restores});
 }
 
 TEST_CASE("a world may be destroyed before its engine, and an engine before the world") {
@@ -112,7 +112,7 @@ TEST_CASE("a world may be destroyed before its engine, and an engine before the 
       physics::WorldModel second;
       const BodyHandle b = second.createBody();
       engine::Contacts none;
-      second.detect(*w.collision, nullptr, 4, none);
+      second.detect(*w.engine, w.collision, nullptr, 4, none);
       second.step(*w.engine, none, 0.01);
       CHECK(second.state(b).position.z() < 0);
     }

@@ -107,23 +107,25 @@ TEST_CASE("the table of engines", "[.table]") {
     for (const EngineKind* k : kinds) out += fmt::format(" {} |", cell(*k));
     return out + "\n";
   };
-  const auto can = [&](const char* name, bool EngineKind::*what) {
-    return row(name, [&](const EngineKind& k) { return k.*what ? "yes" : "no"; });
-  };
-  const auto number = [&](const char* name, const char* format, auto&& measure, bool EngineKind::*needs = nullptr) {
+  const auto capabilitiesOf = [](const EngineKind& k) { return EngineWorld(k).can; };
+  std::string abilities;
+  for (const engine::NamedCapability& c : engine::kNamedCapabilities)
+    abilities += row(c.name, [&](const EngineKind& k) { return capabilitiesOf(k).*c.has ? "yes" : "no"; });
+  const auto number = [&](const char* name, const char* format, auto&& measure,
+                          bool engine::Capabilities::*needs = nullptr) {
     return row(name, [&](const EngineKind& k) {
-      if (needs && !(k.*needs)) return std::string("-");
+      if (needs && !(capabilitiesOf(k).*needs)) return std::string("-");
       EngineWorld w(k);
       return fmt::format(fmt::runtime(format), measure(w));
     });
   };
   // What a step costs is measured once, for the chart and for the table.
   std::vector<BarGroup> groups;
-  const auto cost = [&](const char* name, auto&& measure, bool EngineKind::*needs = nullptr) {
+  const auto cost = [&](const char* name, auto&& measure, bool engine::Capabilities::*needs = nullptr) {
     BarGroup group{name, {}};
     std::string out = fmt::format("| {} [us] |", name);
     for (const EngineKind* k : kinds) {
-      if (needs && !(k->*needs)) {
+      if (needs && !(capabilitiesOf(*k).*needs)) {
         out += " - |";
         continue;
       }
@@ -136,7 +138,7 @@ TEST_CASE("the table of engines", "[.table]") {
     groups.push_back(std::move(group));
     return out + "\n";
   };
-  std::string costs = cost("step of 8 robots of 23 bodies, in the air", treesCost, &EngineKind::joints);
+  std::string costs = cost("step of 8 robots of 23 bodies, in the air", treesCost, &engine::Capabilities::joints);
   costs += cost("step of 100 boxes on the ground", boxesCost);
   const std::string where = fmt::format("{}; {}", machine(), commitAndDate(SPARK_SOURCES));
 
@@ -151,20 +153,15 @@ TEST_CASE("the table of engines", "[.table]") {
       << where << ".\n\n"
       << head << "\n"
       << line << "\n"
-      << can("rotation", &EngineKind::rotation) << can("joints", &EngineKind::joints)
-      << can("joints that close loops, angular motors", &EngineKind::loops)
-      << can("forces of joints", &EngineKind::jointForces) << can("inertia of rotors (armature)", &EngineKind::armature)
-      << can("sleep", &EngineKind::sleep)
-      << can("surfaces of contacts: bounce, slip, friction as a force", &EngineKind::surfaces)
-      << can("continues bit for bit from a saved state, or when it is replaced", &EngineKind::restores)
+      << abilities
       << number("energy gained by a pendulum in 10 s, of its potential energy at the start", "{:+.3f}", pendulum,
-                &EngineKind::joints)
+                &engine::Capabilities::joints)
       << number(
              "gap in a hinge with 100 kg [mm]", "{:.3f}", [](EngineWorld& w) { return 1e3 * gap(w); },
-             &EngineKind::joints)
+             &engine::Capabilities::joints)
       << number(
              "overshoot of a motor beyond its stop [mrad]", "{:.2f}", [](EngineWorld& w) { return 1e3 * overshoot(w); },
-             &EngineKind::joints)
+             &engine::Capabilities::joints)
       << number("penetration of the lowest of ten boxes into the ground [mm]", "{:.2f}",
                 [](EngineWorld& w) { return 1e3 * penetration(w); })
       << costs << R"(

@@ -39,7 +39,7 @@ void withRotors(F&& f, JointType type = JointType::hinge) {
             Rotor r(w, type, toWorld, reversed);
             f(w, r);
           },
-          {&EngineKind::joints});
+          {&engine::Capabilities::joints});
 }
 
 double rad(double degrees) { return degrees * kPi / 180; }
@@ -204,7 +204,7 @@ TEST_CASE("the steering angle of a wheel and the angle of its rotation count tur
         w.run(4);
         CHECK(std::abs(w.world.angle(j, 0)) == Approx(rad(500)).margin(0.05));
       },
-      {&EngineKind::joints});
+      {&engine::Capabilities::joints});
 }
 
 TEST_CASE("an Euler motor counts the turns of its outer axes") {
@@ -228,5 +228,5 @@ TEST_CASE("an Euler motor counts the turns of its outer axes") {
         w.run(4);
         CHECK(std::abs(w.world.angle(j, 0)) == Approx(rad(1000)).margin(0.05));
       },
-      {&EngineKind::joints, &EngineKind::loops});
+      {&engine::Capabilities::joints, &engine::Capabilities::loops});
 }

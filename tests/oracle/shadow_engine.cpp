@@ -14,9 +14,17 @@ void DeferralRecorder::describe(Description<DeferralRecorder>& d) {
   d.implements<IEngine>();
 }
 
-void DeferralRecorder::step(engine::Step& step) {
-  deferred_.resize(step.model.bodies.size());
-  for (Index i = 0; i < deferred_.size(); ++i) deferred_[i] = step.steps(i);
+struct DeferralRecorder::Solver : engine::ISolver {
+  explicit Solver(DeferralRecorder& recorder) : node(recorder) {}
+  void step(engine::Step& step) override {
+    node.deferred_.resize(step.model.bodies.size());
+    for (Index i = 0; i < node.deferred_.size(); ++i) node.deferred_[i] = step.steps(i);
+  }
+  DeferralRecorder& node;
+};
+
+std::unique_ptr<engine::ISolver> DeferralRecorder::create(const engine::Model&) {
+  return std::make_unique<Solver>(*this);
 }
 
 void ShadowEngine::describe(Description<ShadowEngine>& d) {
@@ -49,25 +57,26 @@ void ShadowEngine::Result::restore(engine::Step& step) const {
   for (std::size_t i = 0; i < contactForces.size(); ++i) step.contacts[i].forceOnA = contactForces[i];
 }
 
-void ShadowEngine::compile(const engine::Model& model, const engine::State& state) {
-  tested_->compile(model, state);
-  judge_->compile(model, state);
-}
+struct ShadowEngine::Solver : engine::ISolver {
+  explicit Solver(ShadowEngine& shadow) : node(shadow) {}
+  void compile(const engine::Model& model, const engine::State& state) override {
+    tested.of(*node.tested_, model).compile(model, state);
+    judge.of(*node.judge_, model).compile(model, state);
+  }
+  void step(engine::Step& step) override {
+    const Result before = Result::of(step);
+    node.recorder_->clear();
+    tested.of(*node.tested_, step.model).step(step);
+    const Result results = Result::of(step);
+    before.restore(step);
+    judge.of(*node.judge_, step.model).step(step);
+    node.compare(results, step);
+  }
+  ShadowEngine& node;
+  engine::Attached<IEngine> tested, judge;
+};
 
-void ShadowEngine::forget(const engine::Model& model) {
-  tested_->forget(model);
-  judge_->forget(model);
-}
-
-void ShadowEngine::step(engine::Step& step) {
-  const Result before = Result::of(step);
-  recorder_->clear();
-  tested_->step(step);
-  const Result tested = Result::of(step);
-  before.restore(step);
-  judge_->step(step);
-  compare(tested, step);
-}
+std::unique_ptr<engine::ISolver> ShadowEngine::create(const engine::Model&) { return std::make_unique<Solver>(*this); }
 
 void ShadowEngine::record(double error, double& worst) {
   if (error <= worst || std::isnan(worst)) return;

@@ -31,15 +31,14 @@ class DeferralRecorder : public Leaf, public engine::IEngine {
  public:
   static void describe(Description<DeferralRecorder>& d);
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model&, const engine::State&) override {}
-  void step(engine::Step& step) override;
-  void forget(const engine::Model&) override {}
+  std::unique_ptr<engine::ISolver> create(const engine::Model&) override;
   /// Forgets the last step.
   void clear() { deferred_.clear(); }
   /// True if the body was deferred since clear().
   bool deferred(engine::Index body) const { return body < deferred_.size() && deferred_[body]; }
 
  private:
+  struct Solver;
   std::vector<bool> deferred_;  ///< by body; empty: none
 };
 
@@ -50,12 +49,12 @@ class ShadowEngine : public Node, public engine::IEngine {
  public:
   static void describe(Description<ShadowEngine>& d);
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model& model, const engine::State& state) override;
-  void step(engine::Step& step) override;
-  void forget(const engine::Model& model) override;
+  engine::Capabilities capabilities() const override { return tested_->capabilities(); }
+  std::unique_ptr<engine::ISolver> create(const engine::Model&) override;
   const Agreement& agreement() const { return agreement_; }
 
  private:
+  struct Solver;
   /// The results of a step.
   struct Result {
     engine::State state;

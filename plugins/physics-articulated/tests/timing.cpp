@@ -35,7 +35,27 @@ double median(std::vector<double> v) {
   return v[v.size() / 2];
 }
 
-/// The articulated engine in one thread, which measures its time.
+/// The articulated solver in one thread, which measures its time.
+struct TimedSolver : engine::ISolver {
+  explicit TimedSolver(engine::IEngine& below) : deferred(below) {}
+  void compile(const engine::Model&, const engine::State&) override { deferredKnows = false; }
+  void step(engine::Step& step) override {
+    const double start = now();
+    const auto others = stepper.step(step, 600, 1, {});
+    spent = now() - start;
+    if (others.empty()) return;
+    engine::ISolver& below = attached.of(deferred, step.model);
+    if (!std::exchange(deferredKnows, true)) below.compile(step.model, step.state);
+    engine::Step rest{step.model, step.state, step.contacts, step.dt, others};
+    below.step(rest);
+  }
+  engine::IEngine& deferred;
+  engine::Attached<engine::IEngine> attached;
+  bool deferredKnows = false;
+  articulated::Stepper stepper;
+  double spent = 0;  ///< time of the last step [us]
+};
+
 class TimedEngine : public spark::Node, public engine::IEngine {
   SPARK_CLASS(TimedEngine, spark::Node)
  public:
@@ -45,21 +65,11 @@ class TimedEngine : public spark::Node, public engine::IEngine {
     d.link(&TimedEngine::deferred_, Child<engine::IEngine>());
   }
   Leaf& leaf() override { return *this; }
-  void compile(const engine::Model& model, const engine::State& state) override { deferred_->compile(model, state); }
-  void step(engine::Step& step) override {
-    const double start = now();
-    const auto others = stepper.step(step, stepper.maxCouplingRows, 1, {});
-    spent = now() - start;
-    if (others.empty()) return;
-    engine::Step rest{step.model, step.state, step.contacts, step.dt, others};
-    deferred_->step(rest);
+  engine::Capabilities capabilities() const override { return {.armature = true, .damping = true}; }
+  std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
+    return std::make_unique<TimedSolver>(*deferred_);
   }
-  void forget(const engine::Model& model) override {
-    stepper.forget(model);
-    deferred_->forget(model);
-  }
-  articulated::Stepper stepper;
-  double spent = 0;  ///< time of the last step [us]
+  const TimedSolver& solver() const { return static_cast<const TimedSolver&>(*parts().front()); }
 
  private:
   Link<engine::IEngine> deferred_;
@@ -91,7 +101,7 @@ struct Timing {
     const double start = now();
     scene.step(twins.dt);
     (&scene == &twins.plain ? dense : world).push_back(now() - start);
-    if (&scene == &twins.solved) solver.push_back(timed.spent);
+    if (&scene == &twins.solved) solver.push_back(timed.solver().spent);
   }
   /// Steps both scenes in alternating blocks. Within a block the caches are warm from the same world's last step, as in
   /// a real run. `before(scene, step)` sets the motors.
@@ -108,12 +118,12 @@ struct Timing {
   /// Prints the medians per robot or box. `count`: their number.
   void print(const char* name, int count) const {
     const double d = median(dense) / count, w = median(world) / count, a = median(solver) / count;
-    const articulated::Stepper& s = timed.stepper;
+    const articulated::Stepper::Counts s = timed.solver().stepper.counts();
     fmt::print("{:<28} {:>8} {:>8} {:>8} {:>8} {:>8} {:>8} {:>6} {:>8}\n", "", "contacts", "dense", "world", "solver",
                "times", "passes", "exact", "deferred");
     fmt::print("{:<28} {:>8.1f} {:>8.1f} {:>8.1f} {:>8.2f} {:>8.1f} {:>8.2f} {:>6} {:>8}\n", name, contacts / count, d,
-               w, a, d / a, static_cast<double>(s.passes()) / static_cast<double>(s.islands()), s.exactSolutions(),
-               s.deferredIslands());
+               w, a, d / a, static_cast<double>(s.passes) / static_cast<double>(s.islands), s.exactSolutions,
+               s.deferredIslands);
   }
 };
 

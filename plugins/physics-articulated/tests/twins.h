@@ -199,7 +199,7 @@ class Twins : public TestHost {
   /// Detects contacts and stores them in Scene::contacts.
   void detectContacts(Scene& s) {
     s.contacts.clear();
-    s.world.detect(s.collision, nullptr, 4, s.contacts);
+    s.world.detect(*s.engine, &s.collision, nullptr, 4, s.contacts);
     for (auto& c : s.contacts) c.solve = c.feedback = true, c.surface = surface;
   }
   /// Copies the state of `plain` to `solved`.

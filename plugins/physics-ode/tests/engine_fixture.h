@@ -44,7 +44,7 @@ struct EngineHost : TestHost {
   }
   /// Appends the detected contacts to `contacts`.
   void detect(int perPair = 4, engine::PairFilter filter = nullptr) {
-    world.detect(collision, filter, perPair, contacts);
+    world.detect(engine, &collision, filter, perPair, contacts);
   }
   /// Makes one step of dt [s]. All contacts are solved with `surface`.
   void step(double dt = 0.02, const engine::Surface& surface = {}) {

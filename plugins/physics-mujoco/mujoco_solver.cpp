@@ -1,0 +1,138 @@
+#include "mujoco_solver.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "mujoco_engine.h"
+
+namespace spark::mujoco {
+
+namespace {
+
+/// Steps until a model that is compiled aside takes over. Compiling takes time with the square of the bodies (0.5 s for
+/// 530 of them on a machine of 2026); steps of 5 ms in real time leave it twice as long.
+int stepsToCompile(std::size_t bodies) {
+  constexpr std::size_t kBodySquaresPerStep = 1400;
+  return 1 + static_cast<int>(bodies * bodies / kBodySquaresPerStep);
+}
+/// Steps for which a world that changes again and again may wait for its model.
+constexpr int kLongestWait = 400;
+
+/// Room for what touches usually: memory grows with the square of the rows, so it is doubled where it does not suffice.
+Sizes sizesFor(const engine::Model& model) {
+  // Bodies without joints lie on each other with all corners; robots stand on their feet.
+  const auto joined =
+      std::count_if(model.bodies.begin(), model.bodies.end(), [](const auto& b) { return b.joints > 0; });
+  const int jointed = static_cast<int>(joined), single = static_cast<int>(model.bodies.size()) - jointed;
+  return {50 + 12 * single + jointed, 200 + 50 * single + 5 * jointed};
+}
+
+}  // namespace
+
+void MujocoSolver::compile(const engine::Model& model, const engine::State& state) {
+  const Sizes least = sizesFor(model);
+  sizes_ = {std::max(least.contacts, sizes_.contacts), std::max(least.rows, sizes_.rows)};
+  if (world_ && static_cast<int>(model.bodies.size()) > engine_.atOnce_ && pending_.waited < kLongestWait)
+    buildAside(model, state);
+  else
+    build(model, state);
+}
+
+void MujocoSolver::build(const engine::Model& model, const engine::State& state) {
+  abandon();
+  world_.reset();
+  Trees trees(model, state);
+  const std::string text = toMjcf(model, trees, step_, sizes_);
+  try {
+    begin(model, std::move(trees), compileWorld(text));
+  } catch (const Error& e) {
+    refuse(e.what());
+  }
+}
+
+void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
+  if (!trees.leftOver.empty() && !std::exchange(engine_.warned_, true))
+    engine_.kernel().log().warning(
+        "{}: {} joints have no effect in MuJoCo: those that close a loop of bodies, and angular motors", engine_.path(),
+        trees.leftOver.size());
+  world_ = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
+  world_->setFilter(filter_);
+  ++engine_.compilations_;
+}
+
+void MujocoSolver::buildAside(const engine::Model& model, const engine::State& state) {
+  world_->bind(model);
+  const int waited = pending_.waited;
+  abandon();
+  Pending& p = pending_;
+  p.waited = waited;
+  p.stepsLeft = stepsToCompile(model.bodies.size());
+  p.trees.emplace(model, state);
+  p.compiled = std::async(std::launch::async, compileWorld, toMjcf(model, *p.trees, step_, sizes_));
+}
+
+void MujocoSolver::abandon() {
+  std::erase_if(abandoned_,
+                [](const auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+  if (pending_.trees) abandoned_.push_back(std::move(pending_.compiled));
+  pending_ = {};
+}
+
+void MujocoSolver::takePending(const engine::Model& model) {
+  Pending& p = pending_;
+  if (!p.trees) return;
+  ++p.waited;
+  if (--p.stepsLeft > 0) return;
+  try {
+    // The number of steps does not depend on the machine, so that runs are alike: a slower one waits here.
+    begin(model, std::move(*p.trees), p.compiled.get());
+  } catch (const Error& e) {
+    refuse(e.what());
+  }
+  p = {};
+}
+
+/// The log says so once; nothing moves until the model is another one.
+void MujocoSolver::refuse(const std::string& why) {
+  world_.reset();
+  if (std::exchange(refused_, why) != why)
+    engine_.kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}", engine_.path(),
+                                 why);
+}
+
+void MujocoSolver::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter,
+                          int perPair, engine::Contacts& out) {
+  filter_ = filter;
+  if (world_) world_->detect(model, state, filter, perPair, out);
+}
+
+void MujocoSolver::step(engine::Step& step) {
+  if (world_ && step_ != step.dt) {
+    step_ = step.dt;
+    build(step.model, step.state);
+  }
+  if (!world_) {
+    for (engine::DynamicState& s : step.state.bodies) s.force.setZero(), s.torque.setZero();
+    return;
+  }
+  try {
+    world_->step(step);
+  } catch (const Error& e) {
+    return refuse(e.what());
+  }
+  if (const std::string message = world_->takeMessage(); !message.empty()) engine_.report(message);
+  takePending(step.model);
+  if (!world_ || full_ || !world_->isFull()) return;
+  const Sizes old = sizes_;
+  engine_.kernel().log().info("{}: MuJoCo's room of {} contacts and {} rows was too small; it is doubled",
+                              engine_.path(), old.contacts, old.rows);
+  sizes_ = {2 * old.contacts, 2 * old.rows};
+  build(step.model, step.state);
+  if (world_) return;
+  // There is no more room: on with the old one.
+  full_ = true;
+  sizes_ = old;
+  build(step.model, step.state);
+}
+
+}  // namespace spark::mujoco

@@ -1,0 +1,59 @@
+#pragma once
+/// \file
+/// Steps a world by MuJoCo, and compiles it anew when it changes.
+
+#include <future>
+#include <memory>
+#include <optional>
+
+#include "mujoco_world.h"
+
+namespace spark {
+
+class MujocoEngine;
+
+namespace mujoco {
+
+/// One world. Detection and dynamics are one in MuJoCo.
+class MujocoSolver : public engine::ISolver, public engine::IDetector {
+ public:
+  /// `engine` owns it.
+  explicit MujocoSolver(MujocoEngine& engine) : engine_(engine) {}
+  void compile(const engine::Model& model, const engine::State& state) override;
+  void step(engine::Step& step) override;
+  engine::IDetector* detector() override { return this; }
+  void compile(const engine::Model&, const engine::State&, std::span<const Index>) override {}
+  void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
+              engine::Contacts& out) override;
+
+ private:
+  /// A model that is being compiled in a second thread.
+  struct Pending {
+    std::optional<Trees> trees;  ///< nullopt: there is none
+    std::future<Compiled> compiled;
+    int stepsLeft = 0;  ///< until it takes over
+    int waited = 0;     ///< steps since the first change that is not in yet
+  };
+  void build(const engine::Model& model, const engine::State& state);
+  void buildAside(const engine::Model& model, const engine::State& state);
+  void begin(const engine::Model& model, Trees trees, Compiled compiled);
+  /// Drops a model that is being compiled.
+  void abandon();
+  /// After a step: the model that was compiled aside takes over when its time has come.
+  void takePending(const engine::Model& model);
+  void refuse(const std::string& why);
+
+  LibraryGuard library_;
+  MujocoEngine& engine_;
+  std::unique_ptr<MujocoWorld> world_;
+  Sizes sizes_;
+  double step_ = 0.005;  ///< s
+  bool full_ = false;    ///< no more room can be had
+  std::string refused_;  ///< why the last model that was refused was
+  Pending pending_;
+  std::vector<std::future<Compiled>> abandoned_;  ///< still compiling, not wanted any more
+  engine::PairFilter filter_ = nullptr;           ///< of the last detect()
+};
+
+}  // namespace mujoco
+}  // namespace spark
