@@ -42,18 +42,26 @@ function scene()
   return server
 end
 
+-- Loads the plugin that provides a class, whoever wrote it. Without one, new() says so.
+local function provide(class)
+  for _, found in ipairs(get("/plugins"):children()) do
+    for _, name in ipairs(found.classes) do
+      if name == class then plugin(found.name) end
+    end
+  end
+end
+
 --- Physics server with collision detection and engine, and a world with a space in the active scene. `engine`: class of
---- the engine, OdeEngine by default; `properties`: properties of the server, set before the world is created.
+--- the engine, of any plugin; OdeEngine by default. `properties`: properties of the server, set before the world is
+--- created.
 function physics(engine, properties, more)
   if more then error("physics(engine, properties): name the engine, such as physics(\"ArticulatedEngine\")", 2) end
   plugin "physics"
   plugin "physics-ode"
   local server = new("PhysicsServer", "/sys/server/physics")
   for name, value in pairs(properties or {}) do server[name] = value end
-  -- MuJoCo has its own collision detection.
-  if engine ~= "MujocoEngine" then new("OdeCollision", "/sys/server/physics/collision") end
-  local plugins = { ArticulatedEngine = "physics-articulated", MujocoEngine = "physics-mujoco" }
-  if plugins[engine] then plugin(plugins[engine]) end
+  new("OdeCollision", "/sys/server/physics/collision")    -- for engines that do not find contacts themselves
+  provide(engine)
   local node = new(engine or "OdeEngine", "/sys/server/physics/engine")
   if engine == "ArticulatedEngine" then node:new("OdeEngine", "deferred") end
   new("World", "/usr/scene/world")

@@ -26,11 +26,8 @@ def suite():
 def example():
     """The example engine runs boxes.lua: the boxes fall, and rest on the ground at the end."""
     lines = len(EXAMPLE.read_text().splitlines())
-    with tempfile.TemporaryDirectory() as folder:
-        config = Path(folder) / "points.lua"
-        config.write_text('plugin "point-masses"\ninclude "boxes.lua"\n')
-        run = subprocess.run([BUILD / "bin/sparkhost", "--config", config, "--plugin-path", BUILD / "tests/engine-plugins", "--set",
-                              "engine=PointMassEngine", "--set", "web=false", "--rate", "max", "--duration", "10"], capture_output=True, text=True)
+    run = subprocess.run([BUILD / "bin/sparkhost", "--config", "boxes.lua", "--plugin-path", BUILD / "tests/engine-plugins", "--set", "engine=PointMassEngine",
+                          "--set", "web=false", "--rate", "max", "--duration", "10"], capture_output=True, text=True)
     end = json.loads(run.stdout.splitlines()[-1]) if run.returncode == 0 else {}
     good = lines <= EXAMPLE_LINES and end.get("cycles") == 500 and end.get("faults") == 0
     return f"{lines} lines; boxes.lua: {end.get('cycles')} cycles, {end.get('faults')} faults, exit code {run.returncode}", PASS if good else FAIL

@@ -91,31 +91,43 @@ class Newcomer:
     installed: bool      # that cmake --install succeeded
     check: Done          # with an empty compiler cache
     stages: list         # of check, with their times
-    slow: Done           # the tests again with the lowest priority, on one processor, beside two busy loops
     unit: float          # CPU seconds of unit(), the mean of before and after
 
 
-def newcomer():
-    """Runs the commands, half an hour or more. Milestones share the result: it is kept for the commit, unless something is uncommitted."""
+def kept(name, judge):
+    """The result of judge(), in terms of JSON. Milestones share it: it is kept for the commit, unless something is uncommitted."""
     commit, changes = (subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
                        for words in (["rev-parse", "HEAD"], ["status", "--porcelain"]))
-    kept = ROOT / f"build/newcomer/{commit}.json"
-    if kept.exists() and not changes:
-        say(f"The fresh clone of this commit was judged before; without {kept} it is judged again")
-        found = json.loads(kept.read_text())
-        return Newcomer(**{**found, **{name: Done(**found[name]) for name in ("play", "check", "slow")}})
-    with fresh_clone() as clone:
-        before = unit()
-        play = clone.command("tools/play")
-        installed = clone.installs()
-        clone.forget_what_was_built()
-        check = clone.command("tools/check")
-        stages = clone.stages("plain")
-        reference = (before + unit()) / 2
-        with busy(2):
-            slow = clone.command("tools/check", before=SLOW)
-    result = Newcomer(play, installed, check, stages, slow, reference)
+    file = ROOT / f"build/newcomer/{commit}-{name}.json"
+    if file.exists() and not changes:
+        say(f"The fresh clone of this commit was judged before; without {file} it is judged again")
+        return json.loads(file.read_text())
+    result = judge()
     if not changes:
-        kept.parent.mkdir(parents=True, exist_ok=True)
-        kept.write_text(json.dumps(asdict(result), indent=1))
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(json.dumps(result, indent=1))
     return result
+
+
+def newcomer():
+    """Runs both commands in a fresh clone, a quarter of an hour."""
+    def judge():
+        with fresh_clone() as clone:
+            before = unit()
+            play = clone.command("tools/play")
+            installed = clone.installs()
+            clone.forget_what_was_built()
+            check = clone.command("tools/check")
+            return asdict(Newcomer(play, installed, check, clone.stages("plain"), (before + unit()) / 2))
+    found = kept("first", judge)
+    return Newcomer(**{**found, **{name: Done(**found[name]) for name in ("play", "check")}})
+
+
+def slow_newcomer():
+    """Runs the tests in a fresh clone with the lowest priority, on one processor, beside two busy loops: most of an hour."""
+    def judge():
+        with fresh_clone() as clone:
+            clone.command("tools/play")
+            with busy(2):
+                return asdict(clone.command("tools/check", before=SLOW))
+    return Done(**kept("slow", judge))
