@@ -3,8 +3,6 @@ import json
 import re
 import shutil
 import subprocess
-import tempfile
-from pathlib import Path
 
 from acceptance.common import FAIL, PASS, ROOT, say, tests
 
