@@ -17,6 +17,7 @@
 
 #include "api/model.h"
 #include "spark/abi/api/engine.h"
+#include "spark/describe.h"
 #include "spark/kernel.h"
 
 namespace spark::engine {
@@ -164,12 +165,30 @@ inline constexpr NamedCapability kNamedCapabilities[] = {
     {"contacts of its own", &Capabilities::detects},
 };
 
-/// Makes the solvers of worlds.
+/// The names of those that it has, or lacks.
+inline std::vector<std::string> namesOf(const Capabilities& can, bool has = true) {
+  std::vector<std::string> out;
+  for (const NamedCapability& c : kNamedCapabilities)
+    if (can.*c.has == has) out.emplace_back(c.name);
+  return out;
+}
+
+/// Makes the solvers of worlds. Its class has `static constexpr engine::Capabilities kCapabilities`, and calls
+/// describeEngine() in its describe().
 class IEngine : public PerWorld<ISolver> {
  public:
   SPARK_INTERFACE(IEngine, 5);
-  /// Always the same.
-  virtual Capabilities capabilities() const { return {}; }
+  virtual Capabilities capabilities() const = 0;
+  std::vector<std::string> capabilityNames() const { return namesOf(capabilities()); }
 };
+
+/// Describes what all engines have.
+template <class E>
+void describeEngine(Description<E>& d) {
+  d.template implements<IEngine>();
+  d.property("capabilities", &IEngine::capabilityNames)
+      .doc(fmt::format("What it does: {}. What it does not: {}.", fmt::join(namesOf(E::kCapabilities), "; "),
+                       fmt::join(namesOf(E::kCapabilities, false), "; ")));
+}
 
 }  // namespace spark::engine

@@ -37,11 +37,12 @@ class ArticulatedSolver : public engine::ISolver {
 class ArticulatedEngine : public Node, public engine::IEngine {
   SPARK_CLASS(ArticulatedEngine, Node)
  public:
+  static constexpr engine::Capabilities kCapabilities{.armature = true, .damping = true};
   static void describe(Description<ArticulatedEngine>& d) {
     d.doc(
         "Rigid bodies, solved along the trees that joints make of them. Islands that it does not want are stepped by "
         "an engine below it.");
-    d.implements<engine::IEngine>();
+    engine::describeEngine(d);
     d.link(&ArticulatedEngine::deferred_, Child<engine::IEngine>());
     d.property("mostRows", &ArticulatedEngine::mostRows_)
         .min(0)
@@ -57,7 +58,7 @@ class ArticulatedEngine : public Node, public engine::IEngine {
         .doc("Number of islands that were deferred to the engine below.");
   }
   Leaf& leaf() override { return *this; }
-  engine::Capabilities capabilities() const override { return {.armature = true, .damping = true}; }
+  engine::Capabilities capabilities() const override { return kCapabilities; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<articulated::ArticulatedSolver>(*this);
   }

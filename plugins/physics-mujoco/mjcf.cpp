@@ -113,8 +113,6 @@ Trees::Trees(const Model& model, const engine::State& state) {
           if (other != kNone && !placed[other]) add(other, static_cast<Index>(at), j);
         }
     }
-  for (Index i = 0; i < model.joints.size(); ++i)
-    if (model.joints[i].a != kNone && !used[i]) leftOver.push_back(i);
   mergeConnectors(model);
 }
 

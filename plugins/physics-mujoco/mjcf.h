@@ -27,7 +27,6 @@ struct Link {
 /// The trees that joints make of the bodies of a model. Joints that close a loop, and angular motors, are left over.
 struct Trees {
   std::vector<Link> links;
-  std::vector<Index> leftOver;  ///< joints
   explicit Trees(const engine::Model& model, const engine::State& state);
 
  private:

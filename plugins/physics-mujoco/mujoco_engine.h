@@ -12,9 +12,22 @@ namespace spark {
 class MujocoEngine : public Leaf, public engine::IEngine {
   SPARK_CLASS(MujocoEngine, Leaf)
  public:
+  static constexpr engine::Capabilities kCapabilities{.loops = false,
+                                                      .jointForces = false,
+                                                      .armature = true,
+                                                      .sleeps = false,
+                                                      .surfaces = false,
+                                                      .restores = false,
+                                                      .parts = false,
+                                                      .detects = true,
+                                                      .controls = true,
+                                                      .damping = true,
+                                                      .springs = true,
+                                                      .bodyDamping = true,
+                                                      .usualStep = 0.005};
   static void describe(Description<MujocoEngine>& d) {
     d.doc("Rigid bodies and contacts by MuJoCo, in coordinates of joints.");
-    d.implements<engine::IEngine>();
+    engine::describeEngine(d);
     d.property("version", &MujocoEngine::version).doc("Version of the library.");
     d.property("atOnce", &MujocoEngine::atOnce_)
         .min(0)
@@ -25,21 +38,7 @@ class MujocoEngine : public Leaf, public engine::IEngine {
     d.property("compilations", &MujocoEngine::compilations).doc("Number of models that were compiled.");
   }
   Leaf& leaf() override { return *this; }
-  engine::Capabilities capabilities() const override {
-    return {.loops = false,
-            .jointForces = false,
-            .armature = true,
-            .sleeps = false,
-            .surfaces = false,
-            .restores = false,
-            .parts = false,
-            .detects = true,
-            .controls = true,
-            .damping = true,
-            .springs = true,
-            .bodyDamping = true,
-            .usualStep = 0.005};
-  }
+  engine::Capabilities capabilities() const override { return kCapabilities; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<mujoco::MujocoSolver>(*this);
   }
@@ -53,7 +52,6 @@ class MujocoEngine : public Leaf, public engine::IEngine {
 
   int atOnce_ = 60;
   std::int64_t compilations_ = 0, messages_ = 0;
-  bool warned_ = false;
 };
 
 }  // namespace spark

@@ -51,10 +51,6 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
 }
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
-  if (!trees.leftOver.empty() && !std::exchange(engine_.warned_, true))
-    engine_.kernel().log().warning(
-        "{}: {} joints have no effect in MuJoCo: those that close a loop of bodies, and angular motors", engine_.path(),
-        trees.leftOver.size());
   world_ = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
   world_->setFilter(filter_);
   ++engine_.compilations_;

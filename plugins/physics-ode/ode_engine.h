@@ -14,9 +14,10 @@ namespace spark {
 class OdeEngine : public Node, public engine::IEngine {
   SPARK_CLASS(OdeEngine, Node)
  public:
+  static constexpr engine::Capabilities kCapabilities{};
   static void describe(Description<OdeEngine>& d) {
     d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
-    d.implements<engine::IEngine>();
+    engine::describeEngine(d);
     d.property("version", &OdeEngine::version).doc("Configuration of the library.");
     d.property("directRows", &OdeEngine::directRows_)
         .min(0)
@@ -29,6 +30,7 @@ class OdeEngine : public Node, public engine::IEngine {
   }
 
   Leaf& leaf() override { return *this; }
+  engine::Capabilities capabilities() const override { return kCapabilities; }
   std::unique_ptr<engine::ISolver> create(const engine::Model& model) override {
     return std::make_unique<ode::OdeSolver>(*this, model.exactReplay);
   }

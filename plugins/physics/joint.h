@@ -43,6 +43,8 @@ class Joint : public PhysicsObject, public IJoint {
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
   bool feedback() const override { return feedback_; }
+  /// The index in the model; kNone when it is not linked or does not act.
+  engine::Index index() const { return world() ? world()->index(joint_) : engine::kNone; }
 
  protected:
   void onLink() override;

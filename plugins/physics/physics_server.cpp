@@ -86,8 +86,11 @@ void PhysicsServer::collect(const Node& scene) {
       collider->setGroup(nullptr);
     } else if (auto group = object->as<CollisionGroup>()) {
       groups.push_back(group);
+    } else if (auto joint = object->as<Joint>()) {
+      effects_.joints.push_back(joint);
     }
   }
+  scene.collect(effects_.handlers);
   formGroups(scene, groups);
   std::vector<ScriptHandler*> scripts;
   scene.collect(scripts);
@@ -117,6 +120,7 @@ bool PhysicsServer::refresh() {
   bodies_.clear();
   scripts_.clear();
   rays_.clear();
+  effects_.clear();
   world_ = findWorld();
   if (!world_) return false;
   collect(*world_->parent());
@@ -162,6 +166,7 @@ void PhysicsServer::physics(const Event& event) {
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldModel> world = world_->model();
   engine::IEngine& engine = *engine_;
+  effects_.check(engine, world->model());
   engine::ICollision* const collision = collision_.get();
   const InUse solving(engine.leaf(), "a step is under way");
   const InUse detecting(collision ? collision->leaf() : engine.leaf(), "a step is under way");

@@ -7,6 +7,7 @@
 ///     place    poses of awake bodies -> transforms, outer ones first -> world matrices
 
 #include "collider.h"
+#include "effects.h"
 #include "handlers.h"
 #include "ray_scene.h"
 
@@ -87,6 +88,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::uint64_t structure_ = 0;  ///< Model::structure for which their indices are
   std::vector<Ref<ScriptHandler>> scripts_;
   physics::RayScene rays_;
+  physics::Effects effects_;
   engine::Contacts contacts_;
   std::uint64_t contactsAt_ = 0;       ///< version of the tree when they were detected
   std::vector<std::size_t> measured_;  ///< indices of contacts that have feedback only because of measureForces

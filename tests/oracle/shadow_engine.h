@@ -31,6 +31,7 @@ class DeferralRecorder : public Leaf, public engine::IEngine {
  public:
   static void describe(Description<DeferralRecorder>& d);
   Leaf& leaf() override { return *this; }
+  engine::Capabilities capabilities() const override { return {}; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override;
   /// Forgets the last step.
   void clear() { deferred_.clear(); }

@@ -1,0 +1,77 @@
+#include "effects.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace spark::physics {
+
+using engine::Index;
+using engine::kNone;
+
+namespace {
+/// The root of the set that a body is in.
+Index find(std::vector<Index>& parent, Index i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+}  // namespace
+
+void Effects::check(engine::IEngine& engine, const engine::Model& model) {
+  if (engine_.get() != &engine.leaf()) {
+    engine_ = Ref<Leaf>(&engine.leaf());
+    engineName_ = engine.leaf().classObject()->name();
+    said_ = {};
+    seen_ = {};
+  }
+  const std::array now{model.structure, model.dynamics};
+  if (std::exchange(seen_, now) == now) return;
+  const engine::Capabilities can = engine.capabilities();
+  checkJoints(can, model);
+  if (!can.surfaces) checkSurfaces();
+}
+
+void Effects::checkJoints(const engine::Capabilities& can, const engine::Model& model) {
+  for (const Joint* node : joints) {
+    const Index i = node->index();
+    if (i == kNone || model.joints[i].a == kNone) continue;
+    const engine::Joint& j = model.joints[i];
+    if (!can.joints) return say(kJoints, *node, "joints have");
+    const bool motor = j.type == engine::JointType::angularMotor;
+    if (!can.loops && motor) say(kAngularMotors, *node, "angular motors have");
+    if (!can.jointForces && j.wantsFeedback) say(kJointForces, *node, "the measuring of forces has");
+    if (!can.armature && std::any_of(j.axes.begin(), j.axes.end(), [](const auto& a) { return a.armature > 0; }))
+      say(kArmature, *node, "the inertia of rotors (armature) has");
+  }
+  if (!can.loops && !said_[kLoops]) checkLoops(model);
+}
+
+void Effects::checkLoops(const engine::Model& model) {
+  // Bodies that joints connect, in one set; the last element is the world.
+  std::vector<Index> parent(model.bodies.size() + 1);
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const Joint* node : joints) {
+    const Index i = node->index();
+    if (i == kNone || model.joints[i].a == kNone || model.joints[i].type == engine::JointType::angularMotor) continue;
+    const Index b = model.joints[i].b == kNone ? static_cast<Index>(model.bodies.size()) : model.joints[i].b;
+    const Index rootA = find(parent, model.joints[i].a), rootB = find(parent, b);
+    if (rootA == rootB) return say(kLoops, *node, "joints that close a loop of bodies have");
+    parent[rootA] = rootB;
+  }
+}
+
+void Effects::checkSurfaces() {
+  for (const CollisionHandler* node : handlers) {
+    const engine::Surface* const s = node->surface();
+    if (!s) continue;
+    if (s->bounceOn && s->bounce > 0) say(kBounce, *node, "bounce has");
+    if (s->slipOn) say(kSlip, *node, "slip has");
+    if (!s->pyramid && std::isfinite(s->mu)) say(kForceFriction, *node, "friction that is a force has");
+  }
+}
+
+void Effects::say(Kind kind, const Leaf& node, const char* what) {
+  if (std::exchange(said_[kind], true)) return;
+  node.kernel().log().warning("{}: {} no effect with {}", node.path(), what, engineName_);
+}
+
+}  // namespace spark::physics

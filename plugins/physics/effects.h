@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Says what of a world has no effect with its engine.
+
+#include <array>
+#include <vector>
+
+#include "collider.h"
+#include "joint.h"
+
+namespace spark::physics {
+
+/// Logs once for each kind, with the path of the first node that has it: "/usr/scene/...: bounce has no effect with
+/// MujocoEngine".
+class Effects {
+ public:
+  /// The joints and handlers of the world, in tree order; valid until the tree changes.
+  std::vector<Joint*> joints;
+  std::vector<CollisionHandler*> handlers;
+  void clear() { joints.clear(), handlers.clear(), seen_ = {}; }
+  /// Checks a world that changed since the last call; another engine says its own.
+  void check(engine::IEngine& engine, const engine::Model& model);
+
+ private:
+  enum Kind { kJoints, kAngularMotors, kLoops, kJointForces, kArmature, kBounce, kSlip, kForceFriction, kKinds };
+  void checkJoints(const engine::Capabilities& can, const engine::Model& model);
+  void checkLoops(const engine::Model& model);
+  void checkSurfaces();
+  void say(Kind kind, const Leaf& node, const char* what);
+  Ref<Leaf> engine_;                     ///< whose kinds were said
+  std::string engineName_;               ///< its class
+  std::array<std::uint64_t, 2> seen_{};  ///< Model::structure and dynamics at the last check
+  std::array<bool, kKinds> said_{};
+};
+
+}  // namespace spark::physics
