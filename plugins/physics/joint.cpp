@@ -275,7 +275,6 @@ void Joint::loadState(StateReader& in) {
   for (int axis = 0; axis < axes(); ++axis)
     for (int p = 0; p < kSavedParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
   for (int axis = 0; axis < axes(); ++axis) {
-    if (world()) world()->removeControl(joint_, axis);
     if (!in.readBool()) continue;
     engine::Control c;
     for (double* v : {&c.stiffness, &c.damping, &c.position, &c.velocity, &c.force, &c.maxForce}) *v = in.readNumber();

@@ -82,13 +82,25 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
   if (p == JointParameter::fudgeFactor && (v < 0 || v > 1)) return;
   if (p >= JointParameter::armature && v < 0) return;
   damped_ |= p == JointParameter::damping && v > 0;
-  *parameterOf(j, state_.motors[joints_[joint]], p, axis) = v;
-  if (p != JointParameter::velocity && p != JointParameter::maxForce) ++model_.dynamics;
+  const Index index = joints_[joint];
+  *parameterOf(j, motors_[index], p, axis) = v;
+  const bool motor = p == JointParameter::velocity || p == JointParameter::maxForce;
+  if (motor)
+    endControl(index, axis);
+  else
+    ++model_.dynamics;
+  if ((motor || p == JointParameter::dryFriction) && axis < axesOf(j.type)) passMotor(index, axis);
+}
+
+void WorldModel::passMotor(Index joint, int axis) {
+  const engine::Motor& set = motors_[joint][axis];
+  const double friction = model_.joints[joint].axes[axis].dryFriction;
+  state_.motors[joint][axis] = set.maxForce > 0 || friction == 0 ? set : engine::Motor{0, friction};
 }
 
 double WorldModel::parameter(JointHandle joint, JointParameter p, int axis) const {
   const Joint& j = of(joint);
-  return hasParameter(j, p, axis) ? *parameterOf(j, state_.motors[joints_[joint]], p, axis) : 0;
+  return hasParameter(j, p, axis) ? *parameterOf(j, motors_[joints_[joint]], p, axis) : 0;
 }
 
 void WorldModel::setMujoco(JointHandle joint, int axis, const engine::MujocoAxis& numbers) {
@@ -99,7 +111,10 @@ void WorldModel::setMujoco(JointHandle joint, int axis, const engine::MujocoAxis
 void WorldModel::drive(JointHandle joint, int axis, double speed) {
   const Joint& j = of(joint);
   if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;
-  state_.motors[joints_[joint]][axis].velocity = rounded(bounded(speed));
+  const Index index = joints_[joint];
+  motors_[index][axis].velocity = rounded(bounded(speed));
+  endControl(index, axis);
+  passMotor(index, axis);
   // Wake the first body of attach().
   if (speed == 0 || j.reversed || j.a == kNone || state_.bodies[j.a].awake) return;
   setEnabled(bodies_.handleOf(j.a), true);
@@ -118,8 +133,8 @@ void WorldModel::control(JointHandle joint, int axis, const engine::Control& wan
   } else {
     state_.controls[at].control = wanted;
   }
-  // In place of the motor there is dry friction.
-  state_.motors[index][axis] = {0, j.axes[axis].dryFriction};
+  motors_[index][axis] = {};
+  passMotor(index, axis);
   if (j.a != kNone && !state_.bodies[j.a].awake) setEnabled(bodies_.handleOf(j.a), true);
 }
 
@@ -128,8 +143,8 @@ const engine::Control* WorldModel::controlOf(JointHandle joint, int axis) const 
   return at == kNone ? nullptr : &state_.controls[at].control;
 }
 
-void WorldModel::removeControl(JointHandle joint, int axis) {
-  const Index at = controlAt_[joints_[joint]][axis];
+void WorldModel::endControl(Index joint, int axis) {
+  const Index at = controlAt_[joint][axis];
   if (at == kNone) return;
   state_.controls.erase(state_.controls.begin() + at);
   listControls();

@@ -34,6 +34,7 @@ JointHandle WorldModel::createJoint(JointType type) {
   state_.joints.emplace_back();
   state_.coordinates.emplace_back();
   state_.motors.emplace_back();
+  motors_.emplace_back();
   angles_.emplace_back();
   controlAt_.push_back({kNone, kNone, kNone});
   j.id = nextId_++;

@@ -188,14 +188,14 @@ class WorldModel {
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
   /// Sets the passive spring of an axis: stiffness [Nm/rad or N/m], 0: none, and where it is at rest [rad or m].
   void setSpring(JointHandle joint, int axis, double stiffness, double position);
-  /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach().
+  /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach(). An axis has one command:
+  /// velocity and maxForce end a controller, and a controller ends the motor.
   void drive(JointHandle joint, int axis, double speed);
   /// Puts a controller in place of the axis' motor, or changes its targets; numbers that make no sense are ignored. A
   /// controller wakes body a of the joint.
   void control(JointHandle joint, int axis, const engine::Control& control);
   /// The controller of an axis; nullptr: none. Valid until one is added or removed.
   const engine::Control* controlOf(JointHandle joint, int axis) const;
-  void removeControl(JointHandle joint, int axis);
   /// True when the axis is at one of its stops or beyond.
   bool atStop(JointHandle joint, int axis) const;
   /// First body relative to the second [rad; slider: m]. Continuous: see engine::JointCoordinates.
@@ -289,7 +289,10 @@ class WorldModel {
   /// The rate of an axis' angle, or place, without ODE's rounding [rad/s or m/s].
   double exactRate(engine::Index joint, int axis) const;
   void addAlong(const engine::Joint& joint, int axis, double force);
+  void endControl(engine::Index joint, int axis);
   void listControls();
+  /// Passes the motor of an axis on; where there is none, its dry friction acts in its place.
+  void passMotor(engine::Index joint, int axis);
   void checkBodies();
 
   // Joints (world_joints.cpp, world_axes.cpp, world_turns.cpp).
@@ -338,6 +341,7 @@ class WorldModel {
   std::vector<Watch> watch_;                             ///< by body
   mutable std::vector<CachedAngle> angles_;              ///< by joint
   std::uint64_t poses_ = 1;                              ///< see poses()
+  std::vector<engine::Motors> motors_;                   ///< by joint: as they were set
   std::vector<std::array<engine::Index, 3>> controlAt_;  ///< by joint and axis: its place in State::controls
   bool damped_ = false;                                  ///< an axis has damping
   bool bodiesDamped_ = false;                            ///< a body has damping

@@ -64,8 +64,6 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags
   callMethod(leaf, "setMujocoStopMargin", List{0, n.stopMargin});
   callMethod(leaf, "setMujocoFrictionSolref", List{0, toList(n.frictionSolref)});
   callMethod(leaf, "setMujocoFrictionSolimp", List{0, toList(n.frictionSolimp)});
-  // Without a motor: nothing but dry friction.
-  made.control(0, {});
   // A spring is a law of its own, beside the joint's controller and its limits.
   if (flags.passive && j.stiffness > 0) callMethod(leaf, "setSpring", List{0, j.stiffness, j.springPosition});
 }

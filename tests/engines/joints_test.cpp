@@ -307,14 +307,55 @@ TEST_CASE("joints keep their positions when another body is created and destroye
       });
 }
 
-TEST_CASE("a removed controller has no effect, and a controller accumulates no torque on a sleeping body") {
+TEST_CASE("an axis has one command: the last one counts") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    const auto rate = [&] { return w.run(1), w.world.angleRate(j, 0); };
+    w.motor(j, 0, 1, 10);
+    CHECK(rate() == Approx(1).epsilon(0.05));
+    w.world.control(j, 0, {.damping = 10, .velocity = -2});
+    CHECK(w.world.parameter(j, JointParameter::maxForce, 0) == 0);
+    CHECK(rate() == Approx(-2).epsilon(0.05));
+    // A speed alone is a motor without force.
+    w.world.drive(j, 0, 1);
+    CHECK(w.world.controlOf(j, 0) == nullptr);
+    CHECK(rate() == Approx(-2).epsilon(0.05));
+    w.motor(j, 0, 1, 10);
+    CHECK(rate() == Approx(1).epsilon(0.05));
+  });
+}
+
+TEST_CASE("dry friction acts from the step in which it is set, and while no motor does") {
+  withPairs([](EngineWorld& w, const Pair& p) {
+    const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
+    const auto rate = [&] { return w.run(0.5), w.world.angleRate(j, 0); };
+    for (const bool controlled : {false, true}) {
+      CAPTURE(controlled);
+      if (controlled) w.world.control(j, 0, {});
+      w.world.setParameter(j, JointParameter::dryFriction, 0, 0);
+      w.world.setAngularVelocity(p.child, w.spin(p.parent) + Vec3(0, 0, 1));
+      const double free = rate();
+      CHECK(std::abs(free) > 0.5);
+      w.world.setParameter(j, JointParameter::dryFriction, 0, 50);
+      CHECK(std::abs(rate()) < 0.02);
+    }
+    // It is no motor's force.
+    CHECK(w.world.parameter(j, JointParameter::maxForce, 0) == 0);
+    w.motor(j, 0, 1, 100);
+    CHECK(rate() == Approx(1).epsilon(0.05));
+  });
+}
+
+TEST_CASE(
+    "a controller that a motor replaced has no effect, and a controller accumulates no torque on a sleeping body") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.control(j, 0, {.force = 0.1});
     w.run(0.5);
     const double rate = w.world.angleRate(j, 0);
     CHECK(rate == Approx(0.5).epsilon(0.05));
-    w.world.removeControl(j, 0);
+    w.world.setParameter(j, JointParameter::maxForce, 0, 0);
+    CHECK(w.world.controlOf(j, 0) == nullptr);
     w.run(1);
     CHECK(w.world.angleRate(j, 0) == Approx(rate).epsilon(0.05));
   });

@@ -376,3 +376,18 @@ TEST_CASE("a cone twist joint is accepted and constrains nothing") {
   CHECK(j.as<IJoint>()->angle(0) == 0);
   CHECK_THROWS_WITH(p.scene.create("Generic6DOFJoint"), Catch::Contains("Generic6DOFJoint"));
 }
+
+TEST_CASE("a script that sets a motor ends the controller, and one that sets a controller ends the motor") {
+  Pair p;
+  Leaf& j = p.joint("HingeJoint");
+  p.call(j, "setAxis", {0.0, 0.0, 1.0});
+  const auto rate = [&] { return p.step(100), number(j, "getAngleRate"); };
+  p.call(j, "setController", {0, 0.0, 10.0, 0.0, degToRad(-90), 0.0, 1000.0});
+  CHECK(rate() == Approx(-90).epsilon(0.05));
+  p.call(j, "setMaxMotorForce", {0, 1000.0});
+  p.call(j, "setAngularMotorVelocity", {0, 45.0});
+  CHECK(rate() == Approx(45).epsilon(0.05));
+  p.call(j, "setController", {0, 0.0, 10.0, 0.0, degToRad(-90), 0.0, 1000.0});
+  CHECK(rate() == Approx(-90).epsilon(0.05));
+  CHECK(number(j, "getMaxMotorForce", {0}) == 0);
+}
