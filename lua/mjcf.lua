@@ -23,7 +23,10 @@ control()
 
 local world = get "/usr/scene/world"
 world.timestep = timestep
-world.mujocoDensity, world.mujocoViscosity = 1.2, 2e-5    -- air
+if get "/classes/MujocoOptions" then
+  local medium = world:new("MujocoOptions", "mujoco")
+  medium.density, medium.viscosity = 1.2, 2e-5            -- air
+end
 get("/usr/scene/space"):new("PlaneCollider", "ground"):new("ContactJointHandler", "surface").contactBounceMode = false
 
 local place = get("/usr/scene"):new("Transform", "place")

@@ -179,6 +179,8 @@ class IEngine : public PerWorld<ISolver> {
  public:
   SPARK_INTERFACE(IEngine, 5);
   virtual Capabilities capabilities() const = 0;
+  /// True for kinds of extensions that it reads (api/extension.h).
+  virtual bool reads(std::uint64_t /*kind*/) const { return false; }
   std::vector<std::string> capabilityNames() const { return namesOf(capabilities()); }
 };
 

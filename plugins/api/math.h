@@ -126,6 +126,13 @@ struct Convert<Vec3> {
   }
   static Value to(const Vec3& v) { return List{v.x(), v.y(), v.z()}; }
 };
+template <std::size_t N>
+struct Convert<std::array<double, N>> {
+  static constexpr int kScalars = N;
+  static std::string typeName() { return fmt::format("{} numbers", N); }
+  static std::array<double, N> from(Args& args) { return detail::numbers<N>(args); }
+  static Value to(const std::array<double, N>& v) { return List(v.begin(), v.end()); }
+};
 template <>
 struct Convert<Vec3f> {
   static constexpr int kScalars = 3;

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "api/blocks.h"
 #include "api/math.h"
 #include "spark/abi/api/model.h"
 #include "spark/node.h"
@@ -35,18 +36,6 @@ struct WorldParameters {
   bool joinedCollide = false;          ///< bodies that joints connect collide with each other
   double contactSurfaceLayer = 0.001;  ///< allowed penetration depth of contacts [m]
   double timestep = 0;                 ///< of the engine's steps [s]; 0: as the engine says
-  /// Read by MuJoCo alone (MuJoCo's documentation, "option").
-  struct Mujoco {
-    std::string integrator = "Euler";  ///< or "implicit"
-    std::string cone = "pyramidal";    ///< of friction; or "elliptic"
-    std::string solver = "Newton";     ///< or "PGS", "CG"
-    int iterations = 100;              ///< most of the solver
-    double tolerance = 1e-8;           ///< at which the solver stops
-    double impratio = 1;               ///< impedance of friction over that of the normal force
-    double density = 0;                ///< of the medium [kg/m^3]
-    double viscosity = 0;              ///< of the medium [Pa s]
-    Vec3 wind = Vec3::Zero();          ///< velocity of the medium [m/s]
-  } mujoco;
 };
 
 /// Mass distribution of a body.
@@ -115,18 +104,8 @@ struct Geom {
   bool centred = false;    ///< the offset is the identity, as of most parts of a robot
   ShapeDescription shape;  ///< valid: see checkShape()
   bool collides = true;    ///< false: it has no contacts
-  /// The surface as MuJoCo has it, read by that engine alone (MuJoCo's documentation, "Contact").
-  struct Mujoco {
-    Vec3 friction{1, 0.005, 0.0001};                         ///< sliding; torsional and rolling [m]
-    int condim = 3;                                          ///< dimensions of a contact: 1, 3, 4 or 6
-    int priority = 0;                                        ///< of two surfaces that of higher priority counts
-    std::array<double, 2> solref{0.02, 1};                   ///< time constant [s], damping ratio
-    std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance: from, to, width [m], midpoint, power
-    double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
-    int part = 0;                ///< index in Body::parts
-    bool operator==(const Mujoco&) const = default;
-  } mujoco;
-  void* owner = nullptr;  ///< passed to the pair filter and stored in contacts
+  int part = 0;            ///< index in Body::parts; 0 where there is none
+  void* owner = nullptr;   ///< passed to the pair filter and stored in contacts
 };
 
 /// Joint types of the ODE manual, section "Joint types and joint functions".
@@ -185,14 +164,6 @@ struct JointAxis {
     double stopErp = 0;      ///< of the stops' row, 0..1
     double stopCfm = 0;      ///< of the stops' row [velocity / force]
   } ode;
-};
-
-/// What MuJoCo alone reads of an axis (MuJoCo's documentation, "joint"): time constant [s] and damping ratio, and
-/// impedance, of the stops and of dry friction. A motor is dry friction about a moving reference, and stiff.
-struct MujocoAxis {
-  std::array<double, 2> stopSolref{0.01, 1}, frictionSolref{0.01, 1};
-  std::array<double, 5> stopSolimp{0.95, 0.99, 0.001, 0.5, 2}, frictionSolimp{0.9999, 0.9999, 0.001, 0.5, 2};
-  double stopMargin = 0;  ///< distance from a stop at which it begins to act [rad or m]
 };
 
 /// Where a body was when a joint was set.
@@ -272,7 +243,11 @@ struct Model {
   std::vector<Space> spaces;
   std::vector<Geom> geoms;
   std::vector<Joint> joints;
-  std::vector<std::array<MujocoAxis, 3>> mujocoAxes;  ///< by joint
+  /// What single engines know of the elements (api/extension.h), by their indices.
+  struct Extensions {
+    Blocks world;
+    std::vector<Blocks> geoms, joints;
+  } extensions;
   /// Versions: `structure` changes with every element that is created, removed or attached, `collision` with spaces and
   /// geoms, `dynamics` with masses, joints and parameters.
   std::uint64_t structure = 0, collision = 0, dynamics = 0;

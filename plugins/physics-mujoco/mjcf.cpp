@@ -224,13 +224,14 @@ struct Writer {
     }
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
     putPose(pose);
-    const Geom::Mujoco& m = g.mujoco;
-    put(R"( friction="{}" condim="{}" priority="{}" solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")",
-        text(m.friction), m.condim, m.priority, fmt::join(m.solref, " "), fmt::join(m.solimp, " "), m.margin, m.gap);
+    const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
+    put(R"( friction="{:.17g}" condim="{}" priority="{}" solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")",
+        fmt::join(m.friction, " "), m.condim, m.priority, fmt::join(m.solref, " "), fmt::join(m.solimp, " "), m.margin,
+        m.gap);
     put("/>\n");
   }
 
-  void putRange(const engine::JointAxis& a, const engine::MujocoAxis& m) {
+  void putRange(const engine::JointAxis& a, const AxisNumbers& m) {
     put(R"( solreflimit="{:.17g}" solimplimit="{:.17g}" margin="{:.17g}")", fmt::join(m.stopSolref, " "),
         fmt::join(m.stopSolimp, " "), m.stopMargin);
     if (!(a.lowStop <= a.highStop) || (std::isinf(a.lowStop) && std::isinf(a.highStop))) return;
@@ -273,7 +274,7 @@ struct Writer {
       put(R"(<joint name="{}" type="{}" pos="{}" axis="{}")", jointName(link.joint, coordinate), type, text(at),
           text(axis));
       if (!own) return;
-      const engine::MujocoAxis& m = model.mujocoAxes[link.joint][own - j.axes.data()];
+      const auto m = model.extensions.joints[link.joint].get<AxisNumbers>(static_cast<int>(own - j.axes.data()));
       put(R"( armature="{:.17g}" damping="{:.17g}" solreffriction="{:.17g}" solimpfriction="{:.17g}")", own->armature,
           own->damping, fmt::join(m.frictionSolref, " "), fmt::join(m.frictionSolimp, " "));
       putSpring(j, static_cast<int>(own - j.axes.data()));
@@ -353,8 +354,7 @@ struct Writer {
   }
   void putGeoms(Index body, std::size_t part, std::size_t parts) {
     for (const Index g : geoms[body])
-      if (const auto own = static_cast<std::size_t>(model.geoms[g].mujoco.part); (own < parts ? own : 0) == part)
-        putGeom(g);
+      if (const auto own = static_cast<std::size_t>(model.geoms[g].part); (own < parts ? own : 0) == part) putGeom(g);
   }
 
   /// A link with its body, with the joints of the connectors before it, and all links below.
@@ -420,11 +420,13 @@ void putActuators(Writer& w) {
 
 }  // namespace
 
-bool hasActuators(const Model& model) { return model.parameters.mujoco.integrator == "implicit"; }
+OptionNumbers optionsOf(const Model& model) { return model.extensions.world.get<OptionNumbers>(); }
+
+bool hasActuators(const Model& model) { return optionsOf(model).integrator == 1; }
 
 bool hasOwnDrag(const Model& model) {
-  const engine::WorldParameters::Mujoco& o = model.parameters.mujoco;
-  return (o.density > 0 || o.viscosity > 0) && o.integrator == "Euler";
+  const OptionNumbers o = optionsOf(model);
+  return (o.density > 0 || o.viscosity > 0) && o.integrator == 0;
 }
 
 std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes) {
@@ -438,11 +440,14 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
 
   w.put("<mujoco>\n");
   w.put(R"(<compiler angle="radian" inertiafromgeom="false" balanceinertia="true"/>)");
-  const engine::WorldParameters::Mujoco& o = model.parameters.mujoco;
+  const OptionNumbers o = optionsOf(model);
   w.put(R"(<option timestep="{:.17g}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
-        Writer::text(model.parameters.gravity), o.integrator, o.cone, o.solver, o.iterations);
-  w.put(R"( tolerance="{:.17g}" impratio="{:.17g}" density="{:.17g}" viscosity="{:.17g}" wind="{}"/>)", o.tolerance,
-        o.impratio, hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity, Writer::text(o.wind));
+        Writer::text(model.parameters.gravity), OptionNumbers::kIntegrators[static_cast<std::size_t>(o.integrator)],
+        OptionNumbers::kCones[static_cast<std::size_t>(o.cone)],
+        OptionNumbers::kSolvers[static_cast<std::size_t>(o.solver)], o.iterations);
+  w.put(R"( tolerance="{:.17g}" impratio="{:.17g}" density="{:.17g}" viscosity="{:.17g}" wind="{:.17g}"/>)",
+        o.tolerance, o.impratio, hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity,
+        fmt::join(o.wind, " "));
   w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
   w.putMeshes();
   w.put("<worldbody>\n");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/model.h"
+#include "mujoco_nodes.h"
 
 namespace spark::mujoco {
 
@@ -54,6 +55,8 @@ int coordinatesOf(engine::JointType type);
 bool hasOwnDrag(const engine::Model& model);
 
 /// True when controllers are actuators of MuJoCo, named as their coordinates: an implicit integrator treats their
+/// The options of a model.
+OptionNumbers optionsOf(const engine::Model& model);
 /// damping implicitly.
 bool hasActuators(const engine::Model& model);
 

@@ -2,6 +2,7 @@
 /// \file
 /// MuJoCo as an engine of the physics server.
 
+#include "mujoco_nodes.h"
 #include "mujoco_solver.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
@@ -39,6 +40,10 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   }
   Leaf& leaf() override { return *this; }
   engine::Capabilities capabilities() const override { return kCapabilities; }
+  bool reads(std::uint64_t kind) const override {
+    return kind == engine::kindOf(mujoco::SurfaceNumbers::kKind) ||
+           kind == engine::kindOf(mujoco::AxisNumbers::kKind) || kind == engine::kindOf(mujoco::OptionNumbers::kKind);
+  }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<mujoco::MujocoSolver>(*this);
   }

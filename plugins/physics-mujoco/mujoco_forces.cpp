@@ -27,12 +27,12 @@ bool MujocoWorld::passMotors(const State& state) {
 
 /// The drag of the medium on a box of the inertia of one of MuJoCo's bodies (MuJoCo's documentation, "Fluid forces",
 /// inertia model).
-MujocoWorld::Wrench MujocoWorld::dragOf(const Model& model, int body) const {
+MujocoWorld::Wrench MujocoWorld::dragOf(int body) const {
   if (m_->body_mass[body] < mjMINVAL) return {};
-  const engine::WorldParameters::Mujoco& medium = model.parameters.mujoco;
+  const OptionNumbers& medium = options_;
   const auto axes = rotationAt(d_->ximat + 9 * body);
   const Vec3 centre = toVec(d_->xipos + 3 * body);
-  const Vec3 v = axes.transpose() * (velocityOf(body, centre) - medium.wind);
+  const Vec3 v = axes.transpose() * (velocityOf(body, centre) - Vec3(medium.wind.data()));
   const Vec3 w = axes.transpose() * toVec(d_->cvel + 6 * body);
   const Vec3& e = boxes_[static_cast<std::size_t>(body)];  // edges
   const double diameter = e.sum() / 3, viscosity = medium.viscosity, density = medium.density;
@@ -78,7 +78,7 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
     any = true;
     wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body, centreOf(body)).cross(force), force};
   }
-  const auto addDrag = [&](int body) { wrenches_[static_cast<std::size_t>(body)] += dragOf(model, body); };
+  const auto addDrag = [&](int body) { wrenches_[static_cast<std::size_t>(body)] += dragOf(body); };
   for (Index i = 0; medium && i < trees_.links.size(); ++i) {
     if (trees_.links[i].body == kNone || origins_[i].mujocoBody < 0) continue;
     any = true;

@@ -124,6 +124,7 @@ void MujocoWorld::bind(const Model& model) {
     if (link.joint == kNone) continue;
     bindMotors(model.joints[link.joint], link.joint, origins_[i].mujocoJoints);
   }
+  options_ = optionsOf(model);
   joined_.clear();
   engine::forEachJoined(model, [&](Index a, Index b) { joined_.push_back(pairOf(a, b)); });
   std::sort(joined_.begin(), joined_.end());

@@ -70,7 +70,7 @@ class MujocoWorld {
   };
   bool isFree(int body) const;
   void addBodyDamping(const engine::Model& model, Index body, Vec3& force, Vec3& torque) const;
-  Wrench dragOf(const engine::Model& model, int body) const;
+  Wrench dragOf(int body) const;
   /// Centre of mass of the body of the model that has one of MuJoCo's, all its parts together; world frame.
   Vec3 centreOf(int body) const;
   /// A point of one of MuJoCo's bodies, relative to the centre of mass of its tree, and its velocity; world frame.
@@ -111,7 +111,8 @@ class MujocoWorld {
   std::vector<std::uint64_t> geoms_;  ///< by MuJoCo's geom: identity in the model; 0: none
   ModelPointer m_;
   DataPointer d_;
-  std::vector<int> bodyId_;       ///< MuJoCo's, by body; -1: it does not move yet
+  std::vector<int> bodyId_;  ///< MuJoCo's, by body; -1: it does not move yet
+  OptionNumbers options_;
   std::vector<Index> rootOf_;     ///< by link: the first of its tree
   std::vector<Index> geomOf_;     ///< by MuJoCo's geom; kNone: it was removed
   std::vector<DofMotor> motors_;  ///< by degree of freedom

@@ -48,52 +48,32 @@ void Collider::describe(Description<Collider>& d) {
       .doc("Bits of the kinds of colliders that it collides with; MuJoCo's conaffinity.");
   d.property("notCollideWith", &Collider::notCollideWith)
       .doc("Names of the colliders of its space that it does not collide with.");
-  // MuJoCo's documentation, "Contact".
-  using C = Collider;
-  d.property("mujocoFriction", &C::mujocoFriction, &C::setMujocoFriction)
+  d.property("part", &Collider::part, &Collider::setPart)
       .min(0)
-      .doc("For MuJoCo: factor of sliding friction; torsional and rolling friction [m].");
-  d.property("mujocoCondim", &C::mujocoCondim, &C::setMujocoCondim)
-      .doc("For MuJoCo: dimensions of a contact: 1, 3, 4 or 6.");
-  d.property("mujocoPriority", &C::mujocoPriority, &C::setMujocoPriority)
-      .doc("For MuJoCo: of two surfaces that of higher priority counts.");
-  d.property("mujocoSolref", &C::mujocoSolref, &C::setMujocoSolref)
-      .doc("For MuJoCo: time constant [s] and damping ratio of contacts; or, negative, stiffness and damping.");
-  d.property("mujocoSolimp", &C::mujocoSolimp, &C::setMujocoSolimp)
-      .doc("For MuJoCo: impedance of contacts: fractions from and to, width [m], midpoint, power.");
-  d.property("mujocoMargin", &C::mujocoMargin, &C::setMujocoMargin)
-      .unit("m")
-      .min(0)
-      .doc("For MuJoCo: distance at which contacts begin.");
-  d.property("mujocoGap", &C::mujocoGap, &C::setMujocoGap)
-      .unit("m")
-      .min(0)
-      .doc("For MuJoCo: part of that distance without force.");
-  d.property("mujocoPart", &C::mujocoPart, &C::setMujocoPart)
-      .min(0)
-      .doc("For MuJoCo: which of its body's parts it belongs to (addPart), from 0.");
+      .doc("Which of its body's parts it belongs to (addPart), from 0.");
+  d.implements<engine::IExtended>();
   d.abstract();
 }
 
-void Collider::setMujocoCondim(int n) {
-  if (n != 1 && n != 3 && n != 4 && n != 6)
-    throw Error(fmt::format("{}: expected 1, 3, 4 or 6 dimensions of a contact, found {}", where(), n));
-  mujoco_.condim = n;
-  applyMujoco();
+void Collider::setPart(int part) {
+  part_ = part;
+  extend();
 }
 
-void Collider::setMujocoSolref(const std::vector<double>& v) {
-  physics::take(mujoco_.solref, v, where());
-  applyMujoco();
+void Collider::setBlock(const engine::Block& block) {
+  blocks_.set(block);
+  extend();
 }
 
-void Collider::setMujocoSolimp(const std::vector<double>& v) {
-  physics::take(mujoco_.solimp, v, where());
-  applyMujoco();
+void Collider::removeBlock(std::uint64_t kind) {
+  blocks_.remove(kind);
+  extend();
 }
 
-void Collider::applyMujoco() {
-  if (world() && geom_ != physics::GeomHandle::none) world()->setMujoco(geom_, mujoco_);
+void Collider::extend() {
+  if (!world() || geom_ == physics::GeomHandle::none) return;
+  world()->setPart(geom_, part_);
+  world()->setBlocks(geom_, blocks_);
 }
 
 void Collider::onLink() {
@@ -135,7 +115,7 @@ void Collider::reshape() {
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot take that shape", where()), e);
   }
-  applyMujoco();
+  extend();
   attach();
 }
 

@@ -9,7 +9,7 @@ namespace spark {
 
 /// Base of colliders. A collider moves with the RigidBody before it among its siblings; without one it is static, at
 /// the pose of its nearest transform. A collider inside a TransformCollider is part of that one.
-class Collider : public PhysicsObject, public ICollider, public IFollowsTransform {
+class Collider : public PhysicsObject, public ICollider, public IFollowsTransform, public engine::IExtended {
   SPARK_CLASS(Collider, PhysicsObject)
  public:
   /// The collision handlers of a collider; collected again when the shape of the tree changed.
@@ -29,6 +29,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   virtual std::optional<Vec3> halfExtent(const Mat3& /*rotation*/) const { return std::nullopt; }
   Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
+  void setBlock(const engine::Block& block) override;
+  void removeBlock(std::uint64_t kind) override;
 
   /// As of the last refreshHandlers().
   const Handlers& handlers() const { return handlers_; }
@@ -94,24 +96,10 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void addCollisionHandler(const std::string& className);
   void addNotCollideWithColliderName(std::string name, bool on);
   void addCollideWithColliderName(std::string name, bool on);
-  // What MuJoCo alone reads.
-  const Vec3& mujocoFriction() const { return mujoco_.friction; }
-  void setMujocoFriction(const Vec3& v) { mujoco_.friction = v, applyMujoco(); }
-  int mujocoCondim() const { return mujoco_.condim; }
-  void setMujocoCondim(int n);
-  int mujocoPriority() const { return mujoco_.priority; }
-  void setMujocoPriority(int n) { mujoco_.priority = n, applyMujoco(); }
-  std::vector<double> mujocoSolref() const { return {mujoco_.solref.begin(), mujoco_.solref.end()}; }
-  void setMujocoSolref(const std::vector<double>& v);
-  std::vector<double> mujocoSolimp() const { return {mujoco_.solimp.begin(), mujoco_.solimp.end()}; }
-  void setMujocoSolimp(const std::vector<double>& v);
-  double mujocoMargin() const { return mujoco_.margin; }
-  void setMujocoMargin(double v) { mujoco_.margin = v, applyMujoco(); }
-  double mujocoGap() const { return mujoco_.gap; }
-  void setMujocoGap(double v) { mujoco_.gap = v, applyMujoco(); }
-  int mujocoPart() const { return mujoco_.part; }
-  void setMujocoPart(int n) { mujoco_.part = n, applyMujoco(); }
-  void applyMujoco();
+  int part() const { return part_; }
+  void setPart(int part);
+  /// Passes part and blocks to the model.
+  void extend();
   bool isStaticInWorld() const { return !outer_ && !body_; }
 
   std::shared_ptr<physics::SharedSpace> space_;
@@ -119,7 +107,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   Ref<RigidBody> body_;
   const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
-  engine::Geom::Mujoco mujoco_;
+  int part_ = 0;
+  engine::Blocks blocks_;
   Pose local_;                                             ///< in the frame of body, transform or outer collider
   std::int64_t contactTypes_ = 1, contactAffinities_ = 1;  ///< bits
   bool solid_ = false, listens_ = false, hasBody_ = false;

@@ -21,6 +21,7 @@ void Effects::check(engine::IEngine& engine, const engine::Model& model) {
     engine_ = Ref<Leaf>(&engine.leaf());
     engineName_ = engine.leaf().classObject()->name();
     said_ = {};
+    saidOf_.clear();
     seen_ = {};
   }
   const std::array now{model.structure, model.dynamics};
@@ -28,6 +29,7 @@ void Effects::check(engine::IEngine& engine, const engine::Model& model) {
   const engine::Capabilities can = engine.capabilities();
   checkJoints(can, model);
   if (!can.surfaces) checkSurfaces();
+  checkExtensions(engine);
 }
 
 void Effects::checkJoints(const engine::Capabilities& can, const engine::Model& model) {
@@ -66,6 +68,15 @@ void Effects::checkSurfaces() {
     if (s->bounceOn && s->bounce > 0) say(kBounce, *node, "bounce has");
     if (s->slipOn) say(kSlip, *node, "slip has");
     if (!s->pyramid && std::isfinite(s->mu)) say(kForceFriction, *node, "friction that is a force has");
+  }
+}
+
+void Effects::checkExtensions(const engine::IEngine& engine) {
+  for (engine::IExtension* const e : extensions) {
+    if (engine.reads(e->kind()) || std::find(saidOf_.begin(), saidOf_.end(), e->kind()) != saidOf_.end()) continue;
+    saidOf_.push_back(e->kind());
+    const Leaf& node = e->leaf();
+    node.kernel().log().warning("{}: {} has no effect with {}", node.path(), node.classObject()->name(), engineName_);
   }
 }
 

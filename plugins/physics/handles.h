@@ -34,11 +34,5 @@ inline Pose frameOf(const SceneNode& node) { return node.transform() ? toPose(no
 /// A pose from 6 numbers (position [m], rotation [deg]) or 16 (a column-major matrix); identity from none. Throws Error
 /// for another number of numbers, or when one is not finite.
 Pose poseFrom(const std::vector<double>& numbers);
-/// Copies exactly N numbers. Throws Error that begins with `where` for another number of them.
-template <std::size_t N>
-void take(std::array<double, N>& to, const std::vector<double>& from, const std::string& where) {
-  if (from.size() != N) throw Error(fmt::format("{}: expected {} numbers, found {}", where, N, from.size()));
-  std::copy(from.begin(), from.end(), to.begin());
-}
 
 }  // namespace spark::physics

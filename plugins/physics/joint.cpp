@@ -70,20 +70,7 @@ void Joint::describe(Description<Joint>& d) {
       .doc(
           "Puts a controller in place of the axis' motor: stiffness (position - angle) + damping (velocity - rate) + "
           "force, at most maxForce; of a slider m and N.");
-  // MuJoCo's documentation, "joint".
-  using M = engine::MujocoAxis;
-  const auto firmness = [&](const char* name, auto set, const char* numbers, const char* what) {
-    d.method(name, set).parameters({"axis", numbers}).doc(fmt::format("For MuJoCo: how firm {} are.", what));
-  };
-  const char *const solref = "time constant [s], damping ratio",
-                    *const solimp = "fractions from and to, width [rad or m], midpoint, power";
-  firmness("setMujocoStopSolref", &J::setMujoco<&M::stopSolref>, solref, "the stops");
-  firmness("setMujocoStopSolimp", &J::setMujoco<&M::stopSolimp>, solimp, "the stops");
-  firmness("setMujocoFrictionSolref", &J::setMujoco<&M::frictionSolref>, solref, "dry friction and motor");
-  firmness("setMujocoFrictionSolimp", &J::setMujoco<&M::frictionSolimp>, solimp, "dry friction and motor");
-  d.method("setMujocoStopMargin", &J::setMujocoMargin)
-      .parameters({"axis", "margin [rad or m]"})
-      .doc("For MuJoCo: distance from a stop at which it begins to act.");
+  d.implements<engine::IExtended>();
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
       .doc("Maximum speed that effectors may command on the first axis; 0: no limit.");
@@ -211,18 +198,14 @@ void Joint::turnAxis(int axis, const Vec3& direction) {
   }
 }
 
-template <class F>
-void Joint::changeMujoco(int axis, F change) {
-  expectAxis(axis);
-  if (!world()) return;
-  engine::MujocoAxis numbers = world()->mujoco(joint_, axis);
-  change(numbers);
-  world()->setMujoco(joint_, axis, numbers);
+void Joint::setBlock(const engine::Block& block) {
+  blocks_.set(block);
+  if (world()) world()->setBlocks(joint_, blocks_);
 }
 
-template <auto Member>
-void Joint::setMujoco(int axis, const std::vector<double>& numbers) {
-  changeMujoco(axis, [&](engine::MujocoAxis& m) { physics::take(m.*Member, numbers, where()); });
+void Joint::removeBlock(std::uint64_t kind) {
+  blocks_.remove(kind);
+  if (world()) world()->setBlocks(joint_, blocks_);
 }
 
 void Joint::setSpring(int axis, double stiffness, double position) {
@@ -248,10 +231,6 @@ void Joint::setController(int axis, double stiffness, double damping, double pos
                           double maxForce) {
   expectAxis(axis);
   control(axis, {stiffness, damping, position, velocity, force, maxForce});
-}
-
-void Joint::setMujocoMargin(int axis, double margin) {
-  changeMujoco(axis, [&](engine::MujocoAxis& m) { m.stopMargin = std::max(0.0, margin); });
 }
 
 void Joint::enableFeedback(bool on) {

@@ -10,7 +10,7 @@ namespace spark {
 
 /// Base of joints. Bodies are given by paths relative to the joint. Anchors and axes are given in the frame of the
 /// nearest transform. It is evaluated when they are set, or at attach() when they are set before.
-class Joint : public PhysicsObject, public IJoint {
+class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   SPARK_CLASS(Joint, PhysicsObject)
  public:
   static void describe(Description<Joint>& d);
@@ -43,6 +43,8 @@ class Joint : public PhysicsObject, public IJoint {
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
   bool feedback() const override { return feedback_; }
+  void setBlock(const engine::Block& block) override;
+  void removeBlock(std::uint64_t kind) override;
   /// The index in the model; kNone when it is not linked or does not act.
   engine::Index index() const { return world() ? world()->index(joint_) : engine::kNone; }
 
@@ -103,12 +105,6 @@ class Joint : public PhysicsObject, public IJoint {
   void expectDirection(const Vec3& direction) const;
   /// Sets an axis to a world direction, with errors that name the joint.
   void turnAxis(int axis, const Vec3& direction);
-  /// Changes what MuJoCo alone reads of an axis.
-  template <class F>
-  void changeMujoco(int axis, F change);
-  template <auto Member>
-  void setMujoco(int axis, const std::vector<double>& numbers);
-  void setMujocoMargin(int axis, double margin);
   void setSpring(int axis, double stiffness, double position);
   double stiffness(int axis) const;
   double springPosition(int axis) const;
@@ -132,6 +128,7 @@ class Joint : public PhysicsObject, public IJoint {
   Ref<RigidBody> bodies_[2];
   std::vector<std::function<void()>> pending_;  ///< anchors and axes that were set before attach(), in that order
   bool attached_ = false;
+  engine::Blocks blocks_;
   double maxSpeed_[2] = {0, 0};  ///< rad/s; 0: unlimited
   bool feedback_ = false;
 };

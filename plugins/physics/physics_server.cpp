@@ -91,6 +91,7 @@ void PhysicsServer::collect(const Node& scene) {
     }
   }
   scene.collect(effects_.handlers);
+  scene.collect(effects_.extensions);
   formGroups(scene, groups);
   std::vector<ScriptHandler*> scripts;
   scene.collect(scripts);

@@ -263,7 +263,9 @@ void RigidBody::addPart(double m, const Vec3& center, const Vec3& diagonal, cons
                         const std::vector<double>& axes) {
   if (!(m >= 0)) throw Error(fmt::format("{}: expected the mass of a part, at least 0 kg, found {}", where(), m));
   std::array<double, 4> quaternion{};
-  physics::take(quaternion, axes, where());
+  if (axes.size() != quaternion.size())
+    throw Error(fmt::format("{}: expected 4 numbers of the axes of a part, found {}", where(), axes.size()));
+  std::copy(axes.begin(), axes.end(), quaternion.begin());
   if (!(std::abs(Eigen::Vector4d(quaternion.data()).norm() - 1) < 1e-6))
     throw Error(fmt::format("{}: expected a quaternion of length 1 for the axes of a part", where()));
   const Mat3 inertia = symmetric(diagonal, products);

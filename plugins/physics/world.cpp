@@ -1,7 +1,5 @@
 #include "world.h"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 
 #include "physics_server.h"
@@ -29,6 +27,7 @@ Pose physics::poseFrom(const std::vector<double>& n) {
 
 void World::describe(Description<World>& d) {
   d.doc("The physical world of a scene: gravity and the solver's parameters.");
+  d.implements<engine::IExtended>();
   d.property("gravity", &World::gravity, &World::setGravity)
       .unit("m/s^2")
       .state()
@@ -55,46 +54,17 @@ void World::describe(Description<World>& d) {
       .doc(
           "Length of the engine's steps, of which a step of the simulation has a whole number: in each of them "
           "contacts "
-          "are found and controllers act. 0: as the engine says; MuJoCo's are 0.005 s, the others take one step.");
-  // MuJoCo's documentation, "option".
-  using M = engine::WorldParameters::Mujoco;
-  d.property("mujocoIntegrator", &World::mujoco<&M::integrator>, &World::setMujocoName<&M::integrator>)
-      .doc("For MuJoCo: Euler or implicit.");
-  d.property("mujocoCone", &World::mujoco<&M::cone>, &World::setMujocoName<&M::cone>)
-      .doc("For MuJoCo: friction cones, pyramidal or elliptic.");
-  d.property("mujocoSolver", &World::mujoco<&M::solver>, &World::setMujocoName<&M::solver>)
-      .doc("For MuJoCo: Newton, CG or PGS.");
-  d.property("mujocoIterations", &World::mujoco<&M::iterations>, &World::setMujoco<&M::iterations, int>)
-      .range(1, 10000)
-      .doc("For MuJoCo: most iterations of the solver.");
-  d.property("mujocoTolerance", &World::mujoco<&M::tolerance>, &World::setMujoco<&M::tolerance, double>)
-      .range(0, 1)
-      .doc("For MuJoCo: improvement at which the solver stops.");
-  d.property("mujocoImpratio", &World::mujoco<&M::impratio>, &World::setMujoco<&M::impratio, double>)
-      .range(1e-6, 1e6)
-      .doc("For MuJoCo: impedance of friction over that of the normal force.");
-  d.property("mujocoDensity", &World::mujoco<&M::density>, &World::setMujoco<&M::density, double>)
-      .unit("kg/m^3")
-      .min(0)
-      .doc("For MuJoCo: density of the medium, whose drag acts on all bodies.");
-  d.property("mujocoViscosity", &World::mujoco<&M::viscosity>, &World::setMujoco<&M::viscosity, double>)
-      .unit("Pa s")
-      .min(0)
-      .doc("For MuJoCo: viscosity of the medium.");
-  d.property("mujocoWind", &World::mujoco<&M::wind>, &World::setMujoco<&M::wind, Vec3>)
-      .unit("m/s")
-      .doc("For MuJoCo: velocity of the medium, world frame.");
+          "are found and controllers act. 0: as the engine says.");
 }
 
-template <auto Member>
-void World::setMujocoName(std::string name) {
-  using M = engine::WorldParameters::Mujoco;
-  std::vector<std::string> names{"PGS", "CG", "Newton"};
-  if constexpr (Member == &M::integrator) names = {"Euler", "implicit"};
-  if constexpr (Member == &M::cone) names = {"pyramidal", "elliptic"};
-  if (std::find(names.begin(), names.end(), name) == names.end())
-    throw Error(fmt::format("{}: expected {}, found '{}'", where(), fmt::join(names, " or "), name));
-  setMujoco<Member>(std::move(name));
+void World::setBlock(const engine::Block& block) {
+  blocks_.set(block);
+  if (model_) model_->setBlocks(blocks_);
+}
+
+void World::removeBlock(std::uint64_t kind) {
+  blocks_.remove(kind);
+  if (model_) model_->setBlocks(blocks_);
 }
 
 World& World::of(const Leaf& node) {
@@ -112,6 +82,7 @@ void World::onLink() {
   server.expectEngines();
   model_ = std::make_shared<physics::WorldModel>(server.exactReplay());
   apply();
+  model_->setBlocks(blocks_);
 }
 
 const std::shared_ptr<physics::SharedSpace>& World::space() {

@@ -2,6 +2,7 @@
 /// \file
 /// The world of a scene and its collision spaces.
 
+#include "api/extension.h"
 #include "handles.h"
 
 namespace spark {
@@ -21,7 +22,7 @@ class PhysicsObject : public SceneNode {
 };
 
 /// The physical world of a scene, its child `world`: gravity and the solver's parameters.
-class World : public PhysicsObject {
+class World : public PhysicsObject, public engine::IExtended {
   SPARK_CLASS(World, PhysicsObject)
  public:
   static void describe(Description<World>& d);
@@ -38,6 +39,8 @@ class World : public PhysicsObject {
   void markRecentred() { recentred_ = true; }
   /// Returns and clears that mark.
   bool takeRecentred() { return std::exchange(recentred_, false); }
+  void setBlock(const engine::Block& block) override;
+  void removeBlock(std::uint64_t kind) override;
 
  protected:
   void onLink() override;
@@ -57,21 +60,10 @@ class World : public PhysicsObject {
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
   double timestep() const { return parameters_.timestep; }
   void setTimestep(double v) { parameters_.timestep = v, apply(); }
-  /// What MuJoCo alone reads.
-  template <auto Member>
-  auto mujoco() const {
-    return parameters_.mujoco.*Member;
-  }
-  template <auto Member, class T>
-  void setMujoco(T v) {
-    parameters_.mujoco.*Member = std::move(v);
-    apply();
-  }
-  template <auto Member>
-  void setMujocoName(std::string name);
   void apply();
 
   engine::WorldParameters parameters_;
+  engine::Blocks blocks_;
   std::shared_ptr<physics::WorldModel> model_;
   std::shared_ptr<physics::SharedSpace> ownSpace_;
   bool recentred_ = false;

@@ -103,11 +103,6 @@ double WorldModel::parameter(JointHandle joint, JointParameter p, int axis) cons
   return hasParameter(j, p, axis) ? *parameterOf(j, motors_[joints_[joint]], p, axis) : 0;
 }
 
-void WorldModel::setMujoco(JointHandle joint, int axis, const engine::MujocoAxis& numbers) {
-  model_.mujocoAxes[joints_[joint]][axis] = numbers;
-  ++model_.dynamics;
-}
-
 void WorldModel::drive(JointHandle joint, int axis, double speed) {
   const Joint& j = of(joint);
   if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;

@@ -30,7 +30,7 @@ bool hasAnchor(JointType type) {
 
 JointHandle WorldModel::createJoint(JointType type) {
   Joint& j = model_.joints.emplace_back();
-  model_.mujocoAxes.emplace_back();
+  model_.extensions.joints.emplace_back();
   state_.joints.emplace_back();
   state_.coordinates.emplace_back();
   state_.motors.emplace_back();

@@ -283,6 +283,7 @@ GeomHandle WorldModel::createGeom(SpaceHandle space, const ShapeDescription& sha
   g.shape = shape;
   g.owner = owner;
   geomEdited_.push_back(0);
+  model_.extensions.geoms.emplace_back();
   ++model_.structure;
   return geoms_.add();
 }
@@ -325,11 +326,29 @@ void WorldModel::setPose(GeomHandle geom, const Pose& pose) {
   markEdited(geoms_[geom]);
 }
 
-void WorldModel::setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface) {
-  engine::Geom::Mujoco& own = model_.geoms[geoms_[geom]].mujoco;
-  if (own == surface) return;
-  own = surface;
+void WorldModel::setPart(GeomHandle geom, int part) {
+  engine::Geom& g = model_.geoms[geoms_[geom]];
+  if (std::exchange(g.part, part) != part) markEdited(geoms_[geom]);
+}
+
+void WorldModel::setBlocks(const engine::Blocks& blocks) {
+  if (blocks.empty() && model_.extensions.world.empty()) return;
+  model_.extensions.world = blocks;
+  ++model_.dynamics;
+}
+
+void WorldModel::setBlocks(GeomHandle geom, const engine::Blocks& blocks) {
+  engine::Blocks& own = model_.extensions.geoms[geoms_[geom]];
+  if (blocks.empty() && own.empty()) return;
+  own = blocks;
   markEdited(geoms_[geom]);
+}
+
+void WorldModel::setBlocks(JointHandle joint, const engine::Blocks& blocks) {
+  engine::Blocks& own = model_.extensions.joints[joints_[joint]];
+  if (blocks.empty() && own.empty()) return;
+  own = blocks;
+  ++model_.dynamics;
 }
 
 void WorldModel::setCollides(GeomHandle geom, bool on) {
@@ -353,10 +372,10 @@ void WorldModel::compact() {
     for (engine::Space& s : model_.spaces) remap(s.parent, now);
     for (engine::Geom& g : model_.geoms) remap(g.space, now);
   }
-  if (geoms_.removed() > 0) remap(edited_, geoms_.compact(model_.geoms, geomEdited_));
+  if (geoms_.removed() > 0) remap(edited_, geoms_.compact(model_.geoms, model_.extensions.geoms, geomEdited_));
   if (joints_.removed() > 0) {
-    const std::vector<Index> now = joints_.compact(model_.joints, model_.mujocoAxes, state_.joints, state_.coordinates,
-                                                   state_.motors, motors_, angles_);
+    const std::vector<Index> now = joints_.compact(model_.joints, model_.extensions.joints, state_.joints,
+                                                   state_.coordinates, state_.motors, motors_, angles_);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
     listControls();

@@ -152,8 +152,12 @@ class WorldModel {
   void setPose(GeomHandle geom, const Pose& pose);
   /// World pose of a geom.
   Pose pose(GeomHandle geom) const { return poseOf(model_, state_, geoms_[geom]); }
-  /// Sets what MuJoCo alone reads.
-  void setMujoco(GeomHandle geom, const engine::Geom::Mujoco& surface);
+  /// See Geom::part.
+  void setPart(GeomHandle geom, int part);
+  /// What single engines know: see Model::extensions.
+  void setBlocks(const engine::Blocks& blocks);
+  void setBlocks(GeomHandle geom, const engine::Blocks& blocks);
+  void setBlocks(JointHandle joint, const engine::Blocks& blocks);
   /// False: the geom is left out of detect(). True by default.
   void setCollides(GeomHandle geom, bool on);
   engine::Index index(GeomHandle geom) const { return geoms_[geom]; }
@@ -179,11 +183,6 @@ class WorldModel {
   Vec3 axis(JointHandle joint, int axis) const;  ///< unit vector; zero when the joint has no such axis
   /// Ignored for parameters and axes that the joint does not have, and for values that make no sense.
   void setParameter(JointHandle joint, engine::JointParameter p, int axis, double v);
-  /// What MuJoCo alone reads of an axis, 0 to 2.
-  const engine::MujocoAxis& mujoco(JointHandle joint, int axis) const {
-    return model_.mujocoAxes[joints_[joint]][axis];
-  }
-  void setMujoco(JointHandle joint, int axis, const engine::MujocoAxis& numbers);
   /// 0 for parameters and axes that the joint does not have.
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
   /// Sets the passive spring of an axis: stiffness [Nm/rad or N/m], 0: none, and where it is at rest [rad or m].

@@ -57,15 +57,16 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags
   made.setParameter(JointParameter::armature, 0, j.armature);
   made.setParameter(JointParameter::damping, 0, flags.passive ? j.damping : 0);
   made.setParameter(JointParameter::dryFriction, 0, flags.frictionLoss ? j.dryFriction : 0);
-  const engine::MujocoAxis& n = j.numbers;
-  Leaf& leaf = made.leaf();
-  callMethod(leaf, "setMujocoStopSolref", List{0, toList(n.stopSolref)});
-  callMethod(leaf, "setMujocoStopSolimp", List{0, toList(n.stopSolimp)});
-  callMethod(leaf, "setMujocoStopMargin", List{0, n.stopMargin});
-  callMethod(leaf, "setMujocoFrictionSolref", List{0, toList(n.frictionSolref)});
-  callMethod(leaf, "setMujocoFrictionSolimp", List{0, toList(n.frictionSolimp)});
+  if (Leaf* const numbers = extensionOf(made.leaf(), "MujocoAxis")) {
+    const Firmness& n = j.firmness;
+    setProperty(*numbers, "stopSolref", toList(n.stopSolref));
+    setProperty(*numbers, "stopSolimp", toList(n.stopSolimp));
+    setProperty(*numbers, "stopMargin", n.stopMargin);
+    setProperty(*numbers, "frictionSolref", toList(n.frictionSolref));
+    setProperty(*numbers, "frictionSolimp", toList(n.frictionSolimp));
+  }
   // A spring is a law of its own, beside the joint's controller and its limits.
-  if (flags.passive && j.stiffness > 0) callMethod(leaf, "setSpring", List{0, j.stiffness, j.springPosition});
+  if (flags.passive && j.stiffness > 0) callMethod(made.leaf(), "setSpring", List{0, j.stiffness, j.springPosition});
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include "actuator_builder.h"
 #include "body_builder.h"
+#include "construction.h"
 #include "geom_builder.h"
 #include "sensor_builder.h"
 #include "spark/access.h"
@@ -71,13 +72,20 @@ void Builder::compareTimesteps(Node& root) {
 void Builder::setOptions(Node& root) {
   Leaf* const world = worldAround(root);
   if (!world) return;
-  std::vector<std::pair<const char*, Value>> before;
+  struct Old {
+    Leaf* node;
+    const char* property;
+    Value value;
+  };
+  std::vector<Old> before;
   for (const Option& o : model_.options) {
+    Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
+    if (!node) continue;
     try {
-      before.emplace_back(o.property, getProperty(*world, o.property));
-      setProperty(*world, o.property, o.value);
+      before.push_back({node, o.property, getProperty(*node, o.property)});
+      setProperty(*node, o.property, o.value);
     } catch (const Error& e) {
-      for (auto old = before.rbegin(); old != before.rend(); ++old) setProperty(*world, old->first, old->second);
+      for (auto old = before.rbegin(); old != before.rend(); ++old) setProperty(*old->node, old->property, old->value);
       throw Error(o.from.where() + ": cannot set an option", e);
     }
   }

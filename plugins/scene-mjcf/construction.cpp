@@ -1,10 +1,24 @@
 #include "construction.h"
 
 #include "spark/kernel.h"
+#include "spark/plugin_object.h"
 
 namespace spark::mjcf {
 
 Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
+
+Leaf* extensionOf(Leaf& element, const char* className) {
+  constexpr const char* kName = "mujoco";
+  Kernel& kernel = element.kernel();
+  Node& node = *element.asNode();
+  if (Leaf* const there = node.child(kName)) return there;
+  if (!kernel.findClass(className)) {
+    const Plugin* const provider = kernel.plugins().providerOf(className);
+    if (!provider) return nullptr;
+    kernel.plugins().use(provider->name());
+  }
+  return &node.create(className, kName);
+}
 
 Node& Construction::transform(Node& parent, const std::string& name, const Pose& local) {
   Node& node = *parent.create("Transform", name).asNode();

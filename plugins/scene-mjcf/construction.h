@@ -38,6 +38,10 @@ struct Construction {
 
 Pose inverse(const Pose& p);
 
+/// The child `mujoco` of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin provides its
+/// class.
+Leaf* extensionOf(Leaf& element, const char* className);
+
 // Values for properties and methods.
 inline List toList(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 template <std::size_t N>

@@ -54,14 +54,16 @@ void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
 }
 
 void setContact(Node& collider, const Geom& g) {
-  const engine::Geom::Mujoco& m = g.contact;
-  setProperty(collider, "mujocoFriction", toList(m.friction));
-  setProperty(collider, "mujocoCondim", m.condim);
-  setProperty(collider, "mujocoPriority", m.priority);
-  setProperty(collider, "mujocoSolref", toList(m.solref));
-  setProperty(collider, "mujocoSolimp", toList(m.solimp));
-  setProperty(collider, "mujocoMargin", m.margin);
-  setProperty(collider, "mujocoGap", m.gap);
+  const ContactNumbers& m = g.contact;
+  if (Leaf* const numbers = m == ContactNumbers() ? nullptr : extensionOf(collider, "MujocoSurface")) {
+    setProperty(*numbers, "friction", toList(m.friction));
+    setProperty(*numbers, "condim", m.condim);
+    setProperty(*numbers, "priority", m.priority);
+    setProperty(*numbers, "solref", toList(m.solref));
+    setProperty(*numbers, "solimp", toList(m.solimp));
+    setProperty(*numbers, "margin", m.margin);
+    setProperty(*numbers, "gap", m.gap);
+  }
   setProperty(collider, "contactTypes", g.contactTypes);
   setProperty(collider, "contactAffinities", g.contactAffinities);
   // For the other engines.
@@ -105,7 +107,7 @@ void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
     throw Error(fmt::format("there are two geoms '{}'", g.name));
   setShape(collider, g.shape, p.carrier == 0 ? compose(p.world, g.pose) : c_.inNode(p, g.pose));
   setContact(collider, g);
-  setProperty(collider, "mujocoPart", p.part);
+  setProperty(collider, "part", p.part);
 }
 
 void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {

@@ -78,7 +78,7 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
   g.contactTypes = a.integer("contype", 1);
   g.contactAffinities = a.integer("conaffinity", 1);
   g.group = a.integer("group", 0);
-  engine::Geom::Mujoco& m = g.contact;
+  ContactNumbers& m = g.contact;
   a.fill("friction", m.friction);
   m.condim = a.integer("condim", 3);
   if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)

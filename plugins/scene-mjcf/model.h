@@ -16,13 +16,30 @@
 
 namespace spark::mjcf {
 
+/// Numbers of contacts that MuJoCo alone reads (MuJoCo's documentation, "Contact").
+struct ContactNumbers {
+  std::array<double, 3> friction{1, 0.005, 0.0001};  ///< sliding; torsional and rolling [m]
+  int condim = 3, priority = 0;                      ///< dimensions; of two surfaces that of higher priority counts
+  std::array<double, 2> solref{0.02, 1};             ///< time constant [s], damping ratio
+  std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance
+  double margin = 0, gap = 0;                              ///< m
+  bool operator==(const ContactNumbers&) const = default;
+};
+
+/// How firm the stops and the dry friction of a joint are, which MuJoCo alone reads (MuJoCo's documentation, "joint").
+struct Firmness {
+  std::array<double, 2> stopSolref{0.02, 1}, frictionSolref{0.02, 1};
+  std::array<double, 5> stopSolimp{0.9, 0.95, 0.001, 0.5, 2}, frictionSolimp{0.9, 0.95, 0.001, 0.5, 2};
+  double stopMargin = 0;  ///< rad or m
+};
+
 /// A collision shape and a visible one.
 struct Geom {
   Element from;
   std::string name;  ///< "" when absent
   engine::ShapeDescription shape;
-  Pose pose;                     ///< in its body
-  engine::Geom::Mujoco contact;  ///< its numbers of contacts
+  Pose pose;  ///< in its body
+  ContactNumbers contact;
   int contactTypes = 1, contactAffinities = 1;
   bool isShape = true;  ///< false: only its mass counts
   int group = 0;
@@ -46,7 +63,7 @@ struct Joint {
   double stiffness = 0, springPosition = 0;           ///< of a spring, and where it rests [rad or m]
   std::optional<std::array<double, 2>> springDamper;  ///< time constant [s] and damping ratio, in place of both
   double maxForce = HUGE_VAL;                         ///< limit of the sum of its actuators
-  engine::MujocoAxis numbers;
+  Firmness firmness;
 };
 
 struct Site {
@@ -99,11 +116,12 @@ struct Pair {
   std::string geom1, geom2;
 };
 
-/// An option that the file sets: a property of the world and its value.
+/// An option that the file sets: a property of the world, or of what MuJoCo alone reads of it, and its value.
 struct Option {
   Element from;
   const char* property;
   Value value;
+  bool ofMujoco = false;
 };
 
 /// The flags of the element `option` that change how the model moves.

@@ -8,32 +8,34 @@ namespace spark::mjcf {
 
 void readOption(Attributes& a, Model& model, Unsupported& unsupported) {
   const Element& e = a.element();
-  const auto set = [&](const char* property, Value v) { model.options.push_back({e, property, std::move(v)}); };
-  const auto number = [&](const char* name, const char* property, double least) {
+  const auto set = [&](const char* property, Value v, bool ofMujoco = true) {
+    model.options.push_back({e, property, std::move(v), ofMujoco});
+  };
+  const auto number = [&](const char* name, double least, bool ofMujoco = true) {
     if (!a.has(name)) return;
     const double v = a.number(name, 0);
     if (v < least) throw e.error(fmt::format("expected at least {} for '{}' of <option>, found {}", least, name, v));
-    set(property, v);
+    set(name, v, ofMujoco);
   };
-  const auto vector = [&](const char* name, const char* property) {
-    if (Vec3 v = Vec3::Zero(); a.take(name, v)) set(property, List{v.x(), v.y(), v.z()});
+  const auto vector = [&](const char* name, bool ofMujoco) {
+    if (Vec3 v = Vec3::Zero(); a.take(name, v)) set(name, List{v.x(), v.y(), v.z()}, ofMujoco);
   };
-  vector("gravity", "gravity");
-  vector("wind", "mujocoWind");
-  number("timestep", "timestep", 1e-6);
-  number("tolerance", "mujocoTolerance", 0);
-  number("impratio", "mujocoImpratio", 1e-6);
-  number("density", "mujocoDensity", 0);
-  number("viscosity", "mujocoViscosity", 0);
-  if (a.has("iterations")) set("mujocoIterations", std::max(1, a.integer("iterations", 100)));
-  if (a.has("cone")) set("mujocoCone", a.word("cone", {"pyramidal", "elliptic"}, ""));
-  if (a.has("solver")) set("mujocoSolver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
+  vector("gravity", false);
+  vector("wind", true);
+  number("timestep", 1e-6, false);
+  number("tolerance", 0);
+  number("impratio", 1e-6);
+  number("density", 0);
+  number("viscosity", 0);
+  if (a.has("iterations")) set("iterations", std::max(1, a.integer("iterations", 100)));
+  if (a.has("cone")) set("cone", a.word("cone", {"pyramidal", "elliptic"}, ""));
+  if (a.has("solver")) set("solver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
   if (a.has("integrator")) {
     const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
     const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
     if (wanted != taken)
       unsupported.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
-    set("mujocoIntegrator", taken);
+    set("integrator", taken);
   }
   a.ignore({"jacobian"});
   a.finish();
@@ -52,9 +54,11 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
   f.actuation = f.actuation && on("actuation");
   f.clampControl = f.clampControl && on("clampctrl");
   if (!on("constraint")) f.contact = f.limit = f.frictionLoss = false;
-  const auto set = [&](const char* property, Value v) { model.options.push_back({e, property, std::move(v)}); };
+  const auto set = [&](const char* property, Value v, bool ofMujoco = false) {
+    model.options.push_back({e, property, std::move(v), ofMujoco});
+  };
   if (!on("gravity")) set("gravity", List{0.0, 0.0, 0.0});
-  if (!f.passive) set("mujocoDensity", 0.0), set("mujocoViscosity", 0.0);
+  if (!f.passive) set("density", 0.0, true), set("viscosity", 0.0, true);
   const auto refuse = [&](const char* name, bool is, const char* value) {
     if (is) unsupported.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
   };

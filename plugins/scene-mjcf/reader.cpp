@@ -20,10 +20,8 @@ constexpr std::string_view kSections[] = {"compiler",  "default", "option",   "a
 const std::set<std::string_view> kNotSimulated{"visual", "statistic", "custom", "size", "keyframe", "camera", "light"};
 
 /// How firm a joint's stop and its friction are.
-engine::MujocoAxis firmness(Attributes& a) {
-  engine::MujocoAxis n;
-  n.stopSolref = n.frictionSolref = {0.02, 1};
-  n.stopSolimp = n.frictionSolimp = {0.9, 0.95, 0.001, 0.5, 2};
+Firmness firmness(Attributes& a) {
+  Firmness n;
   a.fill("solreflimit", n.stopSolref);
   a.fill("solimplimit", n.stopSolimp);
   a.fill("solreffriction", n.frictionSolref);
@@ -269,7 +267,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
     if ((*range)[0] != -(*range)[1])
       unsupported_.add(e, "an actuatorfrcrange that is not symmetric is taken as symmetric");
   }
-  j.numbers = firmness(a);
+  j.firmness = firmness(a);
   a.ignore({"group", "user"});
   a.finish();
   return j;

@@ -1,6 +1,7 @@
 #include <map>
 #include <set>
 
+#include "../../plugins/physics-mujoco/mujoco_nodes.h"
 #include "engine_world.h"
 
 // Contacts, in each engine.
@@ -113,9 +114,7 @@ TEST_CASE("the parts of a body do not collide with each other, and fall as one")
     for (const int part : {0, 1}) {
       const GeomHandle g =
           w.geom({.shape = Shape::sphere, .radius = 0.2}, b, {Vec3(part ? 0.1 : -0.1, 0, 0), Mat3::Identity()});
-      engine::Geom::Mujoco surface;
-      surface.part = part;
-      w.world.setMujoco(g, surface);
+      w.world.setPart(g, part);
     }
     w.run(0.1);
     CHECK(w.contacts.empty());
@@ -150,15 +149,20 @@ TEST_CASE("MuJoCo uses the friction and restitution parameters of the colliders"
     EngineWorld w(kind);
     w.dt = 0.0025;
     const GeomHandle ground = w.geom({.shape = Shape::plane});
-    w.world.setMujoco(ground, {.friction = {0.4, 0.005, 0.0001}});
+    const auto surface = [&w](GeomHandle geom, const mujoco::SurfaceNumbers& numbers) {
+      engine::Blocks blocks;
+      blocks.set(engine::Block::of(numbers));
+      w.world.setBlocks(geom, blocks);
+    };
+    surface(ground, {.friction = {0.4, 0.005, 0.0001}});
     const BodyHandle b = w.body({0, 0, 0.1}, 2);
-    w.world.setMujoco(w.geom({.shape = Shape::box, .lengths = {0.6, 0.6, 0.2}}, b), {.friction = {0.2, 0.005, 0.0001}});
+    surface(w.geom({.shape = Shape::box, .lengths = {0.6, 0.6, 0.2}}, b), {.friction = {0.2, 0.005, 0.0001}});
     w.world.setLinearVelocity(b, {3, 0, 0});
     w.run(0.4);
     CHECK(w.velocity(b).x() == Approx(3 - 0.4 * 9.81 * 0.4).epsilon(0.05));  // the larger friction of the two
 
     const BodyHandle ball = w.body({5, 0, 1.1});
-    w.world.setMujoco(w.geom({.shape = Shape::sphere, .radius = 0.1}, ball), {.priority = 1, .solref = {-2000, 0}});
+    surface(w.geom({.shape = Shape::sphere, .radius = 0.1}, ball), {.priority = 1, .solref = {-2000, 0}});
     double highest = 0;
     w.run(0.6);
     for (int i = 0; i < 240; ++i) {

@@ -124,8 +124,8 @@ TEST_CASE("the options of a model set the world's parameters, unless it is impor
   CHECK(getProperty(world, "timestep").toNumber() == 0);
   h.import(text);
   CHECK(getProperty(world, "timestep").toNumber() == 0.004);
-  CHECK(getProperty(world, "mujocoDensity").toNumber() == 1.2);
-  CHECK(getProperty(world, "mujocoCone").toString() == "elliptic");
+  CHECK(getProperty(world.asNode()->require<Leaf>("mujoco"), "density").toNumber() == 1.2);
+  CHECK(getProperty(world.asNode()->require<Leaf>("mujoco"), "cone").toString() == "elliptic");
   CHECK(getProperty(world, "gravity").toList()[2].toNumber() == -1);
 }
 

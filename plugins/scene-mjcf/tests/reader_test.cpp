@@ -32,7 +32,7 @@ TEST_CASE("default classes can be nested, and child bodies inherit their parent'
   CHECK(r.body(3).joints[0].damping == 4);
   CHECK(r.body(1).geoms[0].shape.radius == 1);
   CHECK(r.body(2).geoms[0].shape.radius == 2);
-  CHECK(r.body(2).geoms[0].contact.friction == Vec3(0.5, 0.005, 0.0001));
+  CHECK(r.body(2).geoms[0].contact.friction == std::array<double, 3>{0.5, 0.005, 0.0001});
   CHECK(r.messages() == "");
 }
 

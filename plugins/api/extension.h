@@ -1,0 +1,109 @@
+#pragma once
+/// \file
+/// Numbers that one engine knows of an element of a world: blocks of plain data beside the model, made by nodes of that
+/// engine's plugin. The plugin `physics` passes them on and does not read them.
+///
+///     struct Surface {
+///       static constexpr std::string_view kKind = "JoltSurface";
+///       double restitution = 0;
+///     };
+///     class JoltSurface : public engine::Extension<Surface> {      // a child of a collider
+///       SPARK_CLASS(JoltSurface, Leaf)
+///       static void describe(Description<JoltSurface>& d) {
+///         describeExtension(d, "What Jolt alone reads of a collider.");
+///         d.property("restitution", &JoltSurface::get<&Surface::restitution>,
+///         &JoltSurface::set<&Surface::restitution>);
+///       }
+///     };
+///     model.extensions.geoms[i].get<Surface>().restitution         // in the engine
+
+#include <fmt/format.h>
+
+#include <type_traits>
+
+#include "api/blocks.h"
+#include "spark/abi/api/extension.h"
+#include "spark/describe.h"
+#include "spark/error.h"
+#include "spark/node.h"
+
+namespace spark::engine {
+
+/// A node whose element takes blocks: a World, a collider, a joint.
+class IExtended {
+ public:
+  SPARK_INTERFACE(IExtended, 1);
+  virtual ~IExtended() = default;
+  virtual void setBlock(const Block& block) = 0;
+  virtual void removeBlock(std::uint64_t kind) = 0;
+};
+
+/// A node with a block.
+class IExtension {
+ public:
+  SPARK_INTERFACE(IExtension, 1);
+  virtual ~IExtension() = default;
+  virtual Leaf& leaf() = 0;
+  /// That of the name, without a number. Engines say which kinds they read: IEngine::reads().
+  virtual std::uint64_t kind() const = 0;
+};
+
+/// Base of nodes with a block of type T, for the element above them. See the file comment.
+template <class T>
+class Extension : public Leaf, public IExtension {
+ public:
+  Leaf& leaf() override { return *this; }
+  std::uint64_t kind() const override { return kindOf(T::kKind); }
+  const T& numbers() const { return numbers_; }
+  template <auto Member>
+  auto get() const {
+    return numbers_.*Member;
+  }
+  template <auto Member>
+  void set(std::decay_t<decltype(std::declval<T>().*Member)> v) {
+    numbers_.*Member = v;
+    pass();
+  }
+
+ protected:
+  /// Which of several blocks of this kind in one element it is.
+  virtual int number() const { return 0; }
+  void change(const T& numbers) {
+    numbers_ = numbers;
+    pass();
+  }
+  /// Passes the numbers to the element; before the node is linked it does nothing.
+  void pass() {
+    if (above_) above_->setBlock(Block::of(numbers_, number()));
+  }
+  /// Takes them back.
+  void withdraw() {
+    if (above_) above_->removeBlock(Block::of(numbers_, number()).kind);
+  }
+  void onLink() override {
+    Leaf::onLink();
+    above_ = parent() ? parent()->template as<IExtended>() : Found<IExtended>();
+    if (!above_)
+      throw Error(
+          fmt::format("{}: expected a World, a collider or a joint above it: it holds numbers of that", path()));
+    pass();
+  }
+  void onUnlink() override {
+    withdraw();
+    above_ = nullptr;
+    Leaf::onUnlink();
+  }
+
+ private:
+  T numbers_{};
+  IExtended* above_ = nullptr;
+};
+
+/// Describes what all extensions have.
+template <class E>
+void describeExtension(Description<E>& d, const char* doc) {
+  d.doc(doc);
+  d.template implements<IExtension>();
+}
+
+}  // namespace spark::engine
