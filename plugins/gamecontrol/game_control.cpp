@@ -347,10 +347,12 @@ void GameControl::joinBehaviors() {
 void GameControl::joinNewcomers() {
   if (holding()) hold_.orderNewcomers(newcomers_, expect_, joinPolicy_.get());
   released_ = true;
-  auto joining = std::move(newcomers_);
-  newcomers_.clear();
-  for (auto& p : joining)
+  // One after the other: a script that hears of an agent may close the connections of the others.
+  while (!newcomers_.empty()) {
+    std::unique_ptr<Participant> p = std::move(newcomers_.front());
+    newcomers_.erase(newcomers_.begin());
     if (!p->leaving()) join(std::move(p));
+  }
 }
 
 /// Creates the agent's aspect, unless it is `ready`. False if that fails; the participant is removed then.

@@ -38,7 +38,8 @@ void NetServer::poll() { pollPorts(); }
 
 bool NetServer::pollPorts() {
   if (!open_) return false;
-  if (!std::all_of(ports_.begin(), ports_.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
+  const std::vector<Found<TcpPort>>& ports = ports_.all();
+  if (!std::all_of(ports.begin(), ports.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
     try {
       listen();
     } catch (const Error& e) {

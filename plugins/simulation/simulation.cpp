@@ -176,8 +176,9 @@ void Simulation::waitForInput(double seconds) {
   // The first source that can wait; sources that cannot are polled after it.
   const double slice = std::min(seconds, kSlice);
   const auto canWait = [](const Found<IInputSource>& s) { return s->canWait(); };
-  const auto waiter = std::find_if(sources_.begin(), sources_.end(), canWait);
-  const bool found = waiter != sources_.end();
+  const std::vector<Found<IInputSource>>& sources = sources_.all();  // now: the last cycle may have removed some
+  const auto waiter = std::find_if(sources.begin(), sources.end(), canWait);
+  const bool found = waiter != sources.end();
   NowRunning now(kInput, found ? waiter->leaf : nullptr);
   now.beat();
   if (found) {

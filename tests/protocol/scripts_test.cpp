@@ -230,3 +230,51 @@ TEST_CASE("a ScriptAspect may change the rules and refuse the agent that connect
   CHECK(c.closed());
   CHECK(a.kernel.faults() == 0);
 }
+
+TEST_CASE("any handler may remove the network while clients are connected") {
+  const std::string handler = GENERATE(as<std::string>(), "agentConnected", "perceive", "perform", "judge");
+  INFO(handler);
+  Arena a;
+  Leaf& rule = a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule");
+  scripts(a.kernel).attachText(rule, "local handler = '" + handler + R"lua('
+    local function cut() local net = get("/sys/server/net") if net then net:delete() end end
+    on("agentConnected", function(self, event)
+      local agent = get(event.data)
+      if handler == "agentConnected" then cut() end
+      agent:new("ScriptPerceptor", "eye"):on("perceive", handler == "perceive" and cut or function() return 1 end)
+      agent:new("ScriptEffector", "push"):on("perform", handler == "perform" and cut or function() end)
+    end)
+    if handler == "judge" then on("judge", cut) end
+  )lua",
+                               "test", true);
+  Client first = a.client(), second = a.client();
+  a.until([&] { return getProperty(a.port(), "connections") == Value(2); }, false);
+  for (Client* client : {&first, &second}) client->send("(push 1)"), client->arrive();
+  a.net->poll();
+  // From here on there is no network to read from.
+  Event event{"", 0, 0.02, 0, nullptr};
+  for (int cycle = 1; cycle <= 5; ++cycle)
+    for (const ChannelName phase : {phase::kAct, phase::kPrepare, phase::kRule, phase::kSense, phase::kPublish}) {
+      event.cycle = cycle, event.name = phase;
+      a.kernel.events().channel(phase).emit(event);
+    }
+  CHECK_FALSE(a.kernel.root().find("/sys/server/net"));
+  CHECK(a.logged("agent 2 (" + second.name() + ") joins.") == (handler != "agentConnected"));
+  CHECK(a.agents() == 0);
+  CHECK(a.kernel.faults() == 0);
+}
+
+TEST_CASE("a handler may remove the network while an agent leaves") {
+  Arena a;
+  Leaf& rule = a.kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule");
+  scripts(a.kernel).attachText(
+      rule, "on('agentLeaving', function() local net = get('/sys/server/net') if net then net:delete() end end)",
+      "test", true);
+  Client first = a.client(), second = a.client();
+  a.until([&] { return a.agents() == 2; });
+  first.leave();
+  a.until([&] { return getProperty(a.port(), "connections") == Value(1); }, false);
+  for (int cycle = 1; cycle <= 3; ++cycle) a.kernel.events().channel(phase::kAct).emit({phase::kAct});
+  CHECK_FALSE(a.kernel.root().find("/sys/server/net"));
+  CHECK(a.agents() == 0);
+}

@@ -175,6 +175,21 @@ TEST_CASE("A cycle waits until all gates are open, then polls its input once mor
   REQUIRE(f.loop->time() == Approx(0.02));
 }
 
+TEST_CASE("A cycle may remove the source that the loop would wait in") {
+  LoopFixture f;
+  for (const char* name : {"first", "other"}) f.host.kernel.create("Batches", fmt::format("/sys/server/{}", name));
+  f.host.kernel.create<Polled>("Polled", "/sys/server/polled");
+  // Two of three go, and the loop waits next: the list of sources is shorter then.
+  f.host.kernel.events().channel("rule").add(f.host.kernel.root(), [&](Leaf& root, const Event& e) {
+    if (e.cycle != 2) return;
+    Node& servers = root.require<Node>("/sys/server");
+    for (const char* name : {"first", "other"}) servers.remove(*servers.find(name));
+    setProperty(*f.simulation, "rate", "real");
+  });
+  f.runCycles(3);
+  REQUIRE(f.loop->cycle() == 3);
+}
+
 TEST_CASE("A stop request ends the wait for a gate that never opens") {
   LoopFixture f;
   auto& source = f.host.kernel.create<Batches>("Batches", "/sys/server/net");
