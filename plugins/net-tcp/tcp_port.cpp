@@ -104,9 +104,11 @@ void TcpPort::logLimited(Level level, std::string_view what) {
 
 void TcpPort::updateConsumer() {
   const Found<IConnectionConsumer> now = named_.found();
-  if (now.object == consumer_.get()) return;
+  const bool orphaned = !consumer_ && !connections_.empty();  // their consumer was removed
+  if (now.object == consumer_.get() && !orphaned) return;
   if (!connections_.empty()) {
-    logLimited(Level::warning, "its consumer changed, all clients are closed.");
+    logLimited(Level::warning, orphaned ? fmt::format("{} was removed, all clients are closed.", consumerPath_)
+                                        : std::string("its consumer changed, all clients are closed."));
     closeAll();
   }
   consumer_ = now;
@@ -276,7 +278,11 @@ bool TcpPort::deliverMessages(TcpConnection& connection) {
     if (frame.status != IFraming::Frame::Status::message) break;
     at += frame.consumed;
     connection.markSpoken();
-    if (!frame.message.empty()) consumer_->received(connection, frame.message);
+    if (frame.message.empty()) continue;
+    if (consumer_)
+      consumer_->received(connection, frame.message);
+    else
+      connection.close(fmt::format("nothing at '{}' takes messages", consumerPath_));
   }
   if (at > 0) connection.markPartial(false);
   connection.consume(at);

@@ -113,6 +113,24 @@ TEST_CASE("A client that sends part of a message and then nothing is closed afte
   REQUIRE(w.logged("it began a message and did not finish it within 0.01 s"));
 }
 
+TEST_CASE("When its consumer is removed a port closes its clients with one log line, and serves the next consumer") {
+  Wire w;
+  Client silent = w.client(), speaker = w.client();
+  w.waitForEvents(2);
+  speaker.send("too late");
+  Node& usr = w.kernel.root().require<Node>("/usr");
+  usr.remove(*usr.find("consumer"));
+  REQUIRE(silent.closed());
+  REQUIRE(speaker.closed());
+  REQUIRE(w.logged("/usr/consumer was removed, all clients are closed."));
+  Client refused = w.client();
+  REQUIRE(refused.closed());
+  w.consumer = &w.kernel.create<TestConsumer>("TestConsumer", "/usr/consumer");
+  Client next = w.client();
+  next.send("hello");
+  w.until([&] { return !w.consumer->events.empty() && w.consumer->events.back().ends_with(":hello"); }, false);
+}
+
 TEST_CASE("A client that only waits is not closed") {
   Wire w;
   setProperty(w.port(), "messageTimeout", 0.01);
