@@ -2,7 +2,30 @@
 
 #include <spdlog/sinks/rotating_file_sink.h>
 
+#include <filesystem>
+
+#include "spark/error.h"
+
 namespace spark {
+
+namespace {
+/// Throws Error unless `file` is a regular file or does not exist. Others may block when they are opened, as a FIFO
+/// does, or cannot be renamed.
+void requireRegular(const std::string& file) {
+  namespace fs = std::filesystem;
+  if (file.find('\0') != std::string::npos)
+    throw Error(fmt::format("file: expected a name without NUL bytes, found one behind '{}'", file.c_str()));
+  std::error_code ec;
+  const fs::file_type type = fs::status(file, ec).type();
+  if (type == fs::file_type::regular || type == fs::file_type::not_found || type == fs::file_type::none) return;
+  const char* const found = type == fs::file_type::directory   ? "a folder"
+                            : type == fs::file_type::fifo      ? "a FIFO"
+                            : type == fs::file_type::socket    ? "a socket"
+                            : type == fs::file_type::character ? "a device or terminal"
+                                                               : "a special file";
+  throw Error(fmt::format("file: expected a regular file or a new one, found {}: {}", found, file));
+}
+}  // namespace
 
 void FileLogSink::describe(Description<FileLogSink>& d) {
   d.doc("Writes the log to a file, and begins another one when it is full.");
@@ -18,6 +41,7 @@ void FileLogSink::describe(Description<FileLogSink>& d) {
 
 std::shared_ptr<spdlog::logger> FileLogSink::open() {
   if (file_.empty()) return nullptr;
+  requireRegular(file_);
   return inThread(std::make_shared<spdlog::sinks::rotating_file_sink_st>(file_, static_cast<std::size_t>(maxSize_),
                                                                          static_cast<std::size_t>(older_)));
 }

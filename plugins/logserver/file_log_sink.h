@@ -12,6 +12,7 @@ class FileLogSink : public LogSink {
 
  protected:
   std::shared_ptr<spdlog::logger> open() override;
+  const char* advice() const override { return "Make room on the disk, or set file to another one"; }
 
  private:
   const std::string& file() const { return file_; }

@@ -3,6 +3,9 @@
 #include <spdlog/async_logger.h>
 #include <spdlog/details/thread_pool.h>
 
+#include <atomic>
+#include <cstdio>
+
 #include "spark/error.h"
 
 namespace spark {
@@ -11,6 +14,13 @@ namespace {
 /// In the order of Level.
 constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::trace, spdlog::level::debug, spdlog::level::info,
                                                  spdlog::level::warn,  spdlog::level::err,   spdlog::level::off};
+
+/// The beginning of a text, which ends between two characters of UTF-8, with a mark.
+std::string cut(std::string_view text, std::size_t bytes) {
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
+  while (bytes > 0 && continues(text[bytes])) --bytes;
+  return fmt::format("{} ... ({} bytes were cut)", text.substr(0, bytes), text.size() - bytes);
+}
 }  // namespace
 
 void LogSink::describe(Description<LogSink>& d) {
@@ -39,8 +49,21 @@ void LogSink::restart() {
   logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %-7l %v");
   logger->set_level(spdlog::level::trace);  // the log applies the level
   logger->flush_on(spdlog::level::trace);
-  number_ = kernel().log().addSink(level_, [logger](Level level, std::string_view text) {
-    logger->log(kLevels[static_cast<int>(level)], spdlog::string_view_t(text.data(), text.size()));
+  // Not through the log: that would come here again.
+  const auto report = [where = fmt::format("{} ({})", path(), classObject()->name()), advice = std::string(advice()),
+                       reported = std::make_shared<std::atomic<bool>>(false)](const std::string& what) {
+    if (reported->exchange(true)) return;
+    std::fputs(
+        fmt::format("{} cannot write, and its messages are lost: {}. {}. This is reported once.\n", where, what, advice)
+            .c_str(),
+        stderr);
+  };
+  logger->set_error_handler(report);
+  number_ = kernel().log().addSink(level_, [logger, most = longest()](Level level, std::string_view text) {
+    const auto log = [&](std::string_view t) {
+      logger->log(kLevels[static_cast<int>(level)], spdlog::string_view_t(t.data(), t.size()));
+    };
+    text.size() <= most ? log(text) : log(cut(text, most));
   });
 }
 

@@ -6,6 +6,7 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "spark/describe.h"
 #include "spark/kernel.h"
@@ -25,6 +26,10 @@ class LogSink : public Leaf {
   /// The logger that messages go to; it must not block. nullptr: none, because the settings are incomplete. Throws if
   /// it cannot be made.
   virtual std::shared_ptr<spdlog::logger> open() = 0;
+  /// What to do when messages cannot be written; a sentence without its full stop.
+  virtual const char* advice() const { return "Remove the sink"; }
+  /// The length of a message [bytes] beyond which it is cut.
+  virtual std::size_t longest() const { return std::string_view::npos; }
   /// Opens it again with the present settings, if it is linked. Throws Error if that fails; it is closed then.
   void restart();
   /// A logger that passes messages to `sink` in a thread of its own. When the thread is slow, the oldest of `kWaiting`

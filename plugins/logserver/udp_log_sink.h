@@ -13,6 +13,8 @@ class UdpLogSink : public LogSink {
 
  protected:
   std::shared_ptr<spdlog::logger> open() override;
+  const char* advice() const override { return "Check host and port"; }
+  std::size_t longest() const override { return 65000; }  // what a datagram holds, with time and level
 
  private:
   const std::string& host() const { return host_; }

@@ -1,6 +1,8 @@
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -50,7 +52,7 @@ class Receiver {
   Receiver(const Receiver&) = delete;
   Receiver& operator=(const Receiver&) = delete;
   std::string receive() const {
-    char bytes[2000];
+    static char bytes[70000];
     const auto n = ::recv(fd_, bytes, sizeof bytes, 0);
     return n > 0 ? std::string(bytes, static_cast<std::size_t>(n)) : std::string();
   }
@@ -141,6 +143,61 @@ TEST_CASE("a file that cannot be opened is an error that names the sink and the 
   CHECK_THAT(h.text, Contains("goes on"));
 }
 
+TEST_CASE("a file sink takes only a regular file or a new one, and does not wait for the reader of a FIFO") {
+  LogHost h;
+  TemporaryFolder folder;
+  Leaf& sink = h.make("FileLogSink");
+  const auto refusal = [&](const std::string& file) {
+    try {
+      setProperty(sink, "file", file);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("it was accepted");
+  };
+  const std::string fifo = folder.file("fifo");
+  REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);
+  CHECK_THAT(refusal(fifo), Contains("/sys/server/log/FileLogSink (FileLogSink) cannot be opened") &&
+                                Contains("expected a regular file or a new one, found a FIFO: " + fifo));
+  CHECK_THAT(refusal(folder.path().string()), Contains("found a folder: "));
+  CHECK_THAT(refusal("/dev/full"), Contains("found a device or terminal: /dev/full"));
+  CHECK_THAT(refusal(folder.file("a") + std::string("\0b", 2)), Contains("expected a name without NUL bytes"));
+  CHECK_FALSE(fs::exists(folder.path() / "a"));
+  CHECK(refusal(folder.file("new.txt")) == "it was accepted");
+}
+
+TEST_CASE("a sink that cannot write says so once on stderr, with its path and what to do") {
+  LogHost h;
+  TemporaryFolder folder;
+  const std::string file = folder.write("stderr.txt", "");
+  std::fflush(stderr);
+  const int before = ::dup(STDERR_FILENO), captured = ::open(file.c_str(), O_WRONLY);
+  ::dup2(captured, STDERR_FILENO);
+  Leaf& sink = h.make("UdpLogSink");
+  setProperty(sink, "host", "255.255.255.255");  // the system refuses broadcasts
+  setProperty(sink, "port", 9);
+  for (int i = 0; i < 3; ++i) h.kernel.log().info("line {}", i);
+  LogHost::remove(sink);
+  std::fflush(stderr);
+  ::dup2(before, STDERR_FILENO);
+  ::close(before), ::close(captured);
+  CHECK_THAT(contents(file),
+             Matches("/sys/server/log/UdpLogSink \\(UdpLogSink\\) cannot write, and its messages are lost: "
+                     ".*\\. Check host and port\\. This is reported once\\.\n"));
+}
+
+TEST_CASE("a UDP sink cuts a message that a datagram cannot hold, and marks it") {
+  LogHost h;
+  Receiver receiver;
+  setProperty(h.make("UdpLogSink"), "port", receiver.port);
+  std::string umlauts;
+  for (int i = 0; i < 50000; ++i) umlauts += "\u00e4";
+  h.kernel.log().info("a{}", umlauts);
+  const std::string got = receiver.receive();
+  CHECK(got.ends_with("\u00e4 ... (35002 bytes were cut)\n"));
+  CHECK(got.size() < 65507);
+}
+
 TEST_CASE("a UDP sink sends each message to another program") {
   LogHost h;
   Receiver receiver;
@@ -149,7 +206,9 @@ TEST_CASE("a UDP sink sends each message to another program") {
   setProperty(sink, "port", receiver.port);
   h.kernel.log().warning("hello");
   CHECK_THAT(receiver.receive(), Matches("[-0-9 :.]+ warning hello\n"));
-  CHECK_THROWS_WITH(setProperty(sink, "host", "nowhere.else"), Contains("cannot be opened"));
+  CHECK_THROWS_WITH(setProperty(sink, "host", "nowhere.else"),
+                    Contains("cannot be opened") &&
+                        Contains("host: expected an IPv4 address in numbers, such as 127.0.0.1, found 'nowhere.else'"));
 }
 
 TEST_CASE("nobody has to read what a UDP sink sends, and removed sinks get nothing") {
