@@ -12,6 +12,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "api/agents.h"
@@ -41,16 +42,23 @@ class Signal {
   void clear() { buffer_.truncate(first_); }
   /// Adds a copy of a list of another buffer.
   void append(const Element& list) { buffer_.append(list); }
+  /// True if set() can store the value: it is finite and, for an integer of a percept, in the range of integers.
+  bool fits(const Element& number, double value) const {
+    return std::isfinite(value) && (!rounds(number) || std::abs(value) < 0x1p63);
+  }
   /// Replaces a number of the signal. An integer of a percept stays one: it gets the nearest integer.
   void set(const Element& number, double value) {
-    const bool rounds = kind_ == Kind::percept && number.token().kind == Token::Kind::integer;
-    buffer_.set(number.index(), rounds ? std::round(value) : value);
-    if (rounds) buffer_.set(number.index(), number.integer());
+    const bool whole = rounds(number);
+    buffer_.set(number.index(), whole ? std::round(value) : value);
+    if (whole) buffer_.set(number.index(), number.integer());
   }
   /// The element whose first token has that index.
   Element at(std::uint32_t index) const { return {buffer_, index}; }
 
  private:
+  bool rounds(const Element& number) const {
+    return kind_ == Kind::percept && number.token().kind == Token::Kind::integer;
+  }
   Kind kind_;
   Predicates& buffer_;
   std::uint32_t first_;
@@ -86,7 +94,8 @@ class Modifier : public SceneNode {
 ///                is set, the integers of that list are numbers, too
 ///     action     what can be read as a number: in an action numbers may be texts
 ///
-/// Numbers that are not finite stay as they are.
+/// Numbers that are not finite stay as they are, and so do numbers whose result is not finite or, for an integer, does
+/// not fit into one; the first such result of a modifier is logged.
 class NumberModifier : public Modifier {
   SPARK_CLASS(NumberModifier, Modifier)
  public:
@@ -104,6 +113,8 @@ class NumberModifier : public Modifier {
   }
 
  protected:
+  /// The largest number that properties of these classes may have, for ranges: neither infinite nor NaN.
+  static constexpr double kMost = 1e300;
   /// The number that replaces `value`. `index`: which number of its list it is, from 0, as in the property `indices`.
   virtual double change(double value, std::size_t index, const Event& event) = 0;
 
@@ -124,8 +135,20 @@ class NumberModifier : public Modifier {
       const std::optional<double> value = numberOf(e, signal.kind());
       if (!value) continue;
       const std::size_t k = index++;
-      if (std::isfinite(*value) && changes(k)) signal.set(e, change(*value, k, event));
+      if (!std::isfinite(*value) || !changes(k)) continue;
+      if (const double result = change(*value, k, event); signal.fits(e, result))
+        signal.set(e, result);
+      else
+        warn(*value, result);
     }
+  }
+  /// Logs once that a number stays as it is.
+  void warn(double value, double result) {
+    if (std::exchange(warned_, true)) return;
+    kernel().log().warning(
+        "{} ({}) would make {} of {}, which cannot be sent: such numbers stay as they are. Check its properties. This "
+        "is logged once.",
+        path(), classObject()->name(), result, value);
   }
   std::optional<double> numberOf(const Element& e, Signal::Kind kind) const {
     const Token::Kind token = e.token().kind;
@@ -139,6 +162,7 @@ class NumberModifier : public Modifier {
 
   std::string field_;
   std::vector<int> indices_;
+  bool warned_ = false;
 };
 
 }  // namespace spark

@@ -18,7 +18,7 @@ class Backlash : public NumberModifier {
     d.doc("Play between each number and what becomes of it: a change of direction first has to cross a gap.");
     d.property("width", &Backlash::width_)
         .unit("of the number")
-        .min(0)
+        .range(0, kMost)
         .doc("Width of the gap; the first number is in its middle.");
   }
 

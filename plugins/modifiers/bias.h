@@ -13,10 +13,10 @@ class Bias : public NumberModifier {
  public:
   static void describe(Description<Bias>& d) {
     d.doc("Adds a constant offset to each number, which may be drawn once from a normal distribution.");
-    d.property("mean", &Bias::mean_).unit("of the number").doc("Mean of the offsets.");
+    d.property("mean", &Bias::mean_).unit("of the number").range(-kMost, kMost).doc("Mean of the offsets.");
     d.property("sigma", &Bias::sigma_)
         .unit("of the number")
-        .min(0)
+        .range(0, kMost)
         .doc("Standard deviation of the offsets; 0: all are the mean.");
     d.property("random", &Bias::random_).state().doc("State of the random numbers of the offsets.");
   }

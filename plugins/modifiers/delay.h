@@ -13,7 +13,7 @@ class Delay : public Modifier {
     d.property("cycles", &Delay::cycles_).min(0).doc("Dead time in cycles of the agent.");
     d.property("seconds", &Delay::seconds_)
         .unit("s")
-        .min(0)
+        .range(0, modifiers::DelayLine::kMostSeconds)
         .doc("Dead time in simulated time; with both, the longer one counts.");
   }
   void apply(Signal& signal, const Event& event) override { line_.pass(signal, event.time, cycles_, seconds_); }

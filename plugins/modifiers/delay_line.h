@@ -18,6 +18,9 @@ class DelayLine {
   /// The most that it holds [bytes]. A signal that would exceed it is lost, so that a client cannot fill the memory.
   static constexpr std::size_t kMaxBytes = std::size_t(16) << 20;
 
+  /// The longest delay [s], some 32 years.
+  static constexpr double kMostSeconds = 1e9;
+
   /// Moves what is in the signal to the end of the queue, if there is anything. It may leave `cycles` cycles and
   /// `seconds` of simulated time later. Then fills the signal with all that may leave now, and counts the cycle.
   void pass(Signal& signal, double time, std::int64_t cycles, double seconds);

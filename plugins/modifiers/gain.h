@@ -10,7 +10,7 @@ class Gain : public NumberModifier {
  public:
   static void describe(Description<Gain>& d) {
     d.doc("Multiplies each number by a factor.");
-    d.property("gain", &Gain::gain_).unit("1").doc("The factor.");
+    d.property("gain", &Gain::gain_).unit("1").range(-kMost, kMost).doc("The factor.");
   }
 
  protected:

@@ -16,7 +16,7 @@ class Jitter : public Modifier {
         .doc("Longest delay in cycles of the agent: each number from 0 to this one has the same probability.");
     d.property("seconds", &Jitter::seconds_)
         .unit("s")
-        .min(0)
+        .range(0, modifiers::DelayLine::kMostSeconds)
         .doc("Longest delay in simulated time, uniformly distributed from 0; with both, the longer draw counts.");
     d.property("random", &Jitter::random_).state().doc("State of the random numbers of the delays.");
   }

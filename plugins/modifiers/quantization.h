@@ -12,7 +12,10 @@ class Quantization : public NumberModifier {
  public:
   static void describe(Description<Quantization>& d) {
     d.doc("Rounds each number to the nearest multiple of a step.");
-    d.property("step", &Quantization::step_).unit("of the number").min(0).doc("The step; 0: numbers stay as they are.");
+    d.property("step", &Quantization::step_)
+        .unit("of the number")
+        .range(0, kMost)
+        .doc("The step; 0: numbers stay as they are.");
   }
 
  protected:

@@ -19,7 +19,7 @@ class RandomWalk : public NumberModifier {
     d.doc("Adds an offset to each number that begins at 0 and drifts, as the bias of a gyroscope does.");
     d.property("sigma", &RandomWalk::sigma_)
         .unit("of the number / sqrt(s)")
-        .min(0)
+        .range(0, kMost)
         .doc("Standard deviation of the drift in one second; in t seconds it is sqrt(t) times that.");
     d.property("random", &RandomWalk::random_).state().doc("State of the drift's random numbers.");
   }

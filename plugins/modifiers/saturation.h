@@ -13,8 +13,15 @@ class Saturation : public NumberModifier {
  public:
   static void describe(Description<Saturation>& d) {
     d.doc("Limits each number to a range.");
-    d.property("least", &Saturation::least_).unit("of the number").doc("Smaller numbers become this one.");
-    d.property("most", &Saturation::most_).unit("of the number").doc("Larger numbers become this one.");
+    constexpr double kAny = HUGE_VAL;  // infinities, too, but not NaN
+    d.property("least", &Saturation::least_)
+        .unit("of the number")
+        .range(-kAny, kAny)
+        .doc("Smaller numbers become this one.");
+    d.property("most", &Saturation::most_)
+        .unit("of the number")
+        .range(-kAny, kAny)
+        .doc("Larger numbers become this one.");
   }
 
  protected:

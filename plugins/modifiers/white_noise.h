@@ -11,7 +11,7 @@ class WhiteNoise : public NumberModifier {
  public:
   static void describe(Description<WhiteNoise>& d) {
     d.doc("Adds normally distributed noise to each number, anew in each cycle.");
-    d.property("sigma", &WhiteNoise::sigma_).unit("of the number").min(0).doc("Standard deviation.");
+    d.property("sigma", &WhiteNoise::sigma_).unit("of the number").range(0, kMost).doc("Standard deviation.");
     d.property("random", &WhiteNoise::random_).state().doc("State of the noise's random numbers.");
   }
 

@@ -100,6 +100,59 @@ TEST_CASE("Numbers that are not finite stay as they are") {
   CHECK(bench.senseAll({0.25, 0.5, 0.75}) == std::vector<double>{0.25, 0.5, 0.75});  // and leave nothing behind
 }
 
+TEST_CASE("Properties that are not finite are refused") {
+  Bench bench;
+  using Property = std::pair<const char*, const char*>;
+  for (const auto& [name, property] : {Property("Gain", "gain"),
+                                       {"Bias", "mean"},
+                                       {"Bias", "sigma"},
+                                       {"WhiteNoise", "sigma"},
+                                       {"RandomWalk", "sigma"},
+                                       {"Quantization", "step"},
+                                       {"Backlash", "width"},
+                                       {"Delay", "seconds"},
+                                       {"Jitter", "seconds"}}) {
+    INFO(name << '.' << property);
+    Leaf& modifier = bench.add(name);
+    const Value before = getProperty(modifier, property);
+    for (const double bad : {HUGE_VAL, std::nan("")})
+      CHECK_THROWS_WITH(setProperty(modifier, property, bad), Catch::Contains("expected") && Catch::Contains("found"));
+    CHECK(getProperty(modifier, property) == before);
+  }
+  Leaf& saturation = bench.add("Saturation");
+  for (const char* property : {"least", "most"}) {
+    CHECK_THROWS_WITH(setProperty(saturation, property, std::nan("")), Catch::Contains("found nan"));
+    CHECK_NOTHROW(setProperty(saturation, property, property[0] == 'l' ? -HUGE_VAL : HUGE_VAL));
+  }
+}
+
+TEST_CASE("A number stays as it is if its result is not finite, which is logged once for each modifier") {
+  Bench bench;
+  SECTION("gain") { bench.add("Gain", {{"gain", 1e300}}); }
+  SECTION("quantization") { bench.add("Quantization", {{"step", 1e-320}}); }
+  SECTION("a chain") {
+    bench.add("Bias", {{"mean", 1e300}});
+    bench.add("Gain", {{"gain", -1e300}});
+  }
+  for (int i = 0; i < 3; ++i)
+    for (const double v : bench.senseAll({1e200, -1e200})) CHECK(std::isfinite(v));
+  const std::string mark = "which cannot be sent: such numbers stay as they are.";
+  const auto first = bench.text.find(mark);
+  REQUIRE(first != std::string::npos);
+  CHECK(bench.text.find(mark, first + 1) == std::string::npos);
+  CHECK_THAT(bench.text, Catch::Contains("/usr/sensor/"));
+}
+
+TEST_CASE("An integer of a percept stays as it is if its result does not fit into one") {
+  Bench bench;
+  Leaf& gain = bench.add("Gain", {{"field", "id"}, {"gain", 1e18}});
+  CHECK(after(bench, mixed()) == "(S (n 5) (id 7000000000000000000) (v 1.00 2.00 3.00) (w (x 4.00)))");
+  CHECK(bench.text.empty());
+  setProperty(gain, "gain", 1e19);
+  CHECK(after(bench, mixed()) == "(S (n 5) (id 7) (v 1.00 2.00 3.00) (w (x 4.00)))");
+  CHECK_THAT(bench.text, Catch::Contains("/usr/sensor/Gain (Gain) would make 7e+19 of 7"));
+}
+
 TEST_CASE("White noise has its standard deviation and no memory") {
   Bench bench;
   bench.add("WhiteNoise", {{"sigma", 0.5}});
