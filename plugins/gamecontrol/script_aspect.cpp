@@ -40,7 +40,7 @@ std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& re
   constexpr const char* kKinds[] = {"perceptor", "effector", "scene"};
   const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name});
   const Value answer = gamecontrol::askScripts(*this, kRequest, gamecontrol::eventNow(simulation_.get()), &data);
-  return answer.isNil() ? std::string() : answer.plain();
+  return gamecontrol::reasonOf(answer);
 }
 
 void ScriptAspect::tell(std::string_view channel, const AgentAspect& agent) {

@@ -41,7 +41,7 @@ void ScriptEffector::script(const std::string& file, const Value& arguments) {
 std::string ScriptEffector::act(const Element& action) {
   const Value data = toValue(action);
   const Value answer = gamecontrol::askScripts(*this, kPerform, gamecontrol::eventNow(simulation_.get()), &data);
-  return answer.isNil() ? std::string() : answer.plain();
+  return gamecontrol::reasonOf(answer);
 }
 
 }  // namespace spark

@@ -2,6 +2,8 @@
 /// \file
 /// Events at nodes whose scripts do the work.
 
+#include <fmt/format.h>
+
 #include <string>
 #include <string_view>
 
@@ -20,6 +22,16 @@ inline Value askScripts(Leaf& node, std::string_view channel, Event event, const
   event.answer = &answer;
   node.kernel().events().channel(channel).emitAt(node, event);
   return answer;
+}
+
+/// What a script returned as the reason of a refusal, one line for the log or the agent; "" for nil: no refusal.
+inline std::string reasonOf(const Value& answer) {
+  constexpr std::size_t kMost = 1024;  // bytes
+  if (answer.isNil()) return {};
+  std::string reason = answer.plain();
+  if (reason.size() > kMost)
+    return fmt::format("its script returned a reason of {} bytes: expected at most {}", reason.size(), kMost);
+  return reason;
 }
 
 /// An event of the present cycle; of cycle 0 if there is no run loop.

@@ -1,5 +1,7 @@
 #include "gamecontrol/script_perceptor.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "gamecontrol/script_event.h"
@@ -8,7 +10,23 @@ namespace spark {
 
 namespace {
 constexpr std::string_view kPerceive = "perceive";
+constexpr std::int64_t kMost = 65536;  // bytes of a percept, with 8 for each number and list
+
+/// Subtracts the size of a value from `left` [bytes], until that is negative.
+void spend(const Value& value, std::int64_t& left) {
+  left -= value.isString() ? static_cast<std::int64_t>(value.toString().size()) + 1 : 8;
+  if (!value.isList()) return;
+  for (const Value& v : value.toList())
+    if (left >= 0) spend(v, left);
 }
+
+/// "", or why the percept cannot be sent.
+std::string whyNot(const Value& percept) {
+  std::int64_t left = kMost;
+  spend(percept, left);
+  return left < 0 ? fmt::format("expected at most {} bytes, found more", kMost) : whyUnwritable(percept);
+}
+}  // namespace
 
 void ScriptPerceptor::describe(Description<ScriptPerceptor>& d) {
   d.doc("A perceptor written in Lua: its handler of perceive returns the percept.");
@@ -34,7 +52,7 @@ void ScriptPerceptor::share(std::uint64_t round) {
   const Ref<ScriptPerceptor> self(this);
   Value answer = gamecontrol::askScripts(*this, kPerceive, gamecontrol::eventNow(simulation_.get()));
   if (!self || answer.isNil()) return;
-  if (const std::string why = whyUnwritable(answer); why.empty())
+  if (const std::string why = whyNot(answer); why.empty())
     percept_ = std::move(answer);
   else
     refuse(why);

@@ -98,6 +98,27 @@ TEST_CASE("a percept that cannot be sent is logged once and left out") {
   }
 }
 
+TEST_CASE("a percept that is too large is logged once and left out") {
+  for (const char* returned : {"string.rep('x', 70000)", "table.pack(string.byte(string.rep('x', 9000), 1, -1))"}) {
+    ScriptArena a(
+        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
+        std::string(returned) + " end)");
+    INFO(returned);
+    CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+    CHECK(a.logged("/usr/scene/AgentAspect1/eye: its script returned a percept that cannot be sent: expected at most "
+                   "65536 bytes, found more. This is logged once.") == 1);
+  }
+  ScriptArena fits("agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return string.rep('x', 60000) end)");
+  CHECK(fits.percepts().size() > 60000);
+}
+
+TEST_CASE("a reason of a ScriptEffector that is too long is replaced by one line") {
+  ScriptArena a("agent:new('ScriptEffector', 'push'):on('perform', function() return string.rep('x', 2000) end)");
+  a.act("(push 1)");
+  CHECK(a.logged("push: its script returned a reason of 2000 bytes: expected at most 1024") == 1);
+  CHECK_FALSE(a.Arena::logged("xxxx"));
+}
+
 TEST_CASE("an error in the script of a ScriptPerceptor is one line with file and line, and the others sense") {
   ScriptArena a(
       "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function()\n error('no') "

@@ -162,6 +162,29 @@ TEST_CASE("each handler that uses up its budget is switched off and logged") {
   CHECK_THAT(h.text, Equals(line + line));
 }
 
+TEST_CASE("a handler that calls itself without end is switched off and logged") {
+  LuaHost h;
+  Thing& a = h.thing("/usr/a");
+  h.run(
+      "get('/usr/a'):on('tick', function(self)\n  self.count = self.count + 1\n  local function f() return 1 + f() "
+      "end\n  f()\nend)");
+  for (int i = 0; i < 3; ++i) h.emit("tick");
+  CHECK(a.count == 1);
+  CHECK_THAT(h.text, Contains("handler of 'tick' at /usr/a failed: test:3: stack overflow") &&
+                         Contains("It is switched off: it would take as long every time."));
+}
+
+TEST_CASE("a long error of a handler is cut in the log, and its traceback is kept") {
+  LuaHost h;
+  h.thing("/usr/a");
+  h.run(
+      "get('/usr/a'):on('tick', function(self)\n  local function f() error(string.rep('y', 100000)) end\n  f()\nend)");
+  h.emit("tick");
+  CHECK(h.text.size() < 5000);
+  CHECK_THAT(h.text, Contains("failed: test:2: yyyy") && Contains("yyyy ... (95912 bytes were cut)\n") &&
+                         Contains("from test:3"));
+}
+
 TEST_CASE("functions that process much data at once are charged for it") {
   LuaHost h;
   h.run("long = ('a'):rep(1000000) many = {} for i = 1, 200000 do many[i] = i % 1000 end");

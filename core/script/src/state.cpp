@@ -21,6 +21,7 @@ namespace spark::script {
 namespace {
 constexpr int kHookInterval = 1000;  // instructions
 constexpr int kTracebackLines = 8;
+constexpr std::size_t kLongestError = 4096;  // bytes of a message, without the traceback
 
 /// The C function that a run calls. Its argument is the body.
 int callBody(lua_State* L) {
@@ -29,6 +30,17 @@ int callBody(lua_State* L) {
   (*body)(L);
   return 0;
 }
+
+/// Cuts a text between two characters of UTF-8 and marks it.
+void cut(std::string& text, std::size_t bytes) {
+  if (text.size() <= bytes) return;
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
+  text = fmt::format("{} ... ({} bytes were cut)", std::string_view(text).substr(0, bytes), text.size() - bytes);
+}
+
+/// True for Lua's own error of calls that are too deep, which has no other mark. Where it is caught and raised again,
+/// the handler takes as long.
+bool isStackOverflow(const Failure& failure) { return failure.text.find("stack overflow") != std::string::npos; }
 
 std::string megabytes(std::size_t bytes) { return fmt::format("{} MiB", bytes >> 20); }
 }  // namespace
@@ -156,6 +168,7 @@ int State::describeError(lua_State* L) {
   State& state = of(L);
   Failure failure;
   appendText(L, 1, failure.text);
+  cut(failure.text, kLongestError);
   failure.text += nearGlobals(L, failure.text);
   // The traceback: one line for each Lua function. The first is omitted if the message begins with its location.
   lua_Debug ar{};
@@ -202,7 +215,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
 
   std::optional<Failure> result;
   if (status != LUA_OK) result = std::move(failure_).value_or(Failure{});
-  if (result) result->exhausted = left_ <= 0;
+  if (result) result->exhausted = left_ <= 0 || isStackOverflow(*result);
   if (status == LUA_ERRMEM)
     result = Failure{fmt::format("used up its memory: an untrusted script may hold {}", megabytes(kSandboxMemory)), ""};
   if (result && result->text.empty()) result->text = "failed without a message";

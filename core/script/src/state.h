@@ -42,7 +42,7 @@ inline constexpr std::size_t kMaxDepth = 16;
 struct Failure {
   std::string text;        ///< begins with file:line and ends with the traceback
   std::string where;       ///< file:line, "" if unknown
-  bool exhausted = false;  ///< the budget was used up
+  bool exhausted = false;  ///< the budget or the stack was used up
 };
 
 /// A Lua state.
