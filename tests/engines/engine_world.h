@@ -33,6 +33,7 @@ inline const EngineKind kEngines[] = {
     {"OdeEngine", "physics-ode"},
     {"ArticulatedEngine", "physics-articulated"},
     {"MujocoEngine", "physics-mujoco"},
+    {"BulletEngine", "physics-bullet"},
     {"PointMassEngine", "point-masses"},
 };
 

@@ -1,0 +1,36 @@
+#pragma once
+/// \file
+/// Bullet as an engine of the physics server.
+
+#include "bullet_solver.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Rigid bodies by Bullet. It detects its own contacts.
+class BulletEngine : public Leaf, public engine::IEngine {
+  SPARK_CLASS(BulletEngine, Leaf)
+ public:
+  static void describe(Description<BulletEngine>& d) {
+    d.doc("Rigid bodies and contacts by Bullet, in coordinates of joints.");
+    d.implements<engine::IEngine>();
+    d.property("version", &BulletEngine::version).doc("Version of the library.");
+    d.property("iterations", &BulletEngine::iterations_)
+        .min(1)
+        .doc("Largest number of iterations over contacts, motors and stops in a step.");
+  }
+  Leaf& leaf() override { return *this; }
+  engine::Capabilities capabilities() const override {
+    return {.jointForces = false, .armature = true, .detects = true, .damping = true};
+  }
+  std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
+    return std::make_unique<bullet::BulletSolver>(iterations_);
+  }
+
+ private:
+  std::string version() const { return fmt::format("{}.{:02}", btGetVersion() / 100, btGetVersion() % 100); }
+  int iterations_ = 100;
+};
+
+}  // namespace spark

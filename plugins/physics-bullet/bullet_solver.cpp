@@ -1,0 +1,129 @@
+#include "bullet_solver.h"
+
+#include <algorithm>
+
+#include "joint_rows.h"
+
+// Bullet's multi-bodies accelerate (Featherstone's articulated-body algorithm), its projected Gauss-Seidel solves the
+// rows of motors, stops, loops and contacts, and the multi-bodies move. Poses and velocities come from the state in
+// each step, and there is no warm start: a world that is restored goes on as before.
+
+namespace spark::bullet {
+
+using engine::Contact;
+using engine::DynamicState;
+
+void BulletSolver::compile(const engine::Model& model, const engine::State&) {
+  Trees trees(model);
+  leftOver_ = std::move(trees.leftOver);
+  trees_.clear();
+  treeOf_.assign(model.bodies.size(), kNone);
+  linkOf_.assign(model.bodies.size(), kNone);
+  for (Tree& tree : trees.trees) {
+    for (Index i = 0; i < tree.links.size(); ++i) {
+      treeOf_[tree.links[i].body] = static_cast<Index>(trees_.size());
+      linkOf_[tree.links[i].body] = i;
+    }
+    trees_.push_back(std::make_unique<TreeBody>(model, std::move(tree)));
+  }
+  detector_.setJoined(model);
+}
+
+Side BulletSolver::sideOf(Index body) {
+  if (body == kNone) return {};
+  TreeBody& tree = *trees_[treeOf_[body]];
+  return {&tree.multiBody(), tree.linkOf(linkOf_[body])};
+}
+
+void BulletSolver::step(engine::Step& step) {
+  islands_.find(step, trees_.size(), treeOf_, leftOver_);
+  for (std::size_t i = 0; i < islands_.count(); ++i)
+    if (islands_.isActive(i)) stepIsland(step, i);
+}
+
+void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
+  step_ = &step;
+  island_ = island;
+  contactRows_.clear();
+  for (const Index i : islands_.trees(island)) {
+    trees_[i]->take(step.model, step.state);
+    trees_[i]->accelerate(step.model, step.state, step.dt, scratch_);
+    trees_[i]->multiBody().setCompanionId(-1);
+  }
+  rows_.solve(*this, {.dt = step.dt, .iterations = iterations_});
+  readContactForces(step);
+  for (const Index i : islands_.trees(island)) trees_[i]->move(step.state, step.dt, scratch_);
+}
+
+void BulletSolver::write(RowSolver& rows) {
+  const engine::Step& step = *step_;
+  const JointRows joints{step, rows};
+  for (const Index i : islands_.trees(island_)) {
+    TreeBody& tree = *trees_[i];
+    for (const Dof& dof : tree.dofs()) joints.writeDof(tree, dof);
+    for (const Link& link : tree.links()) {
+      if (link.joint == kNone || step.model.joints[link.joint].type != engine::JointType::ball) continue;
+      const engine::Joint& j = step.model.joints[link.joint];
+      joints.writeBallDamping(link.joint, sideOf(j.a), sideOf(j.b));
+    }
+  }
+  for (const Index i : islands_.joints(island_)) {
+    const engine::Joint& j = step.model.joints[leftOver_[i]];
+    joints.writeJoint(leftOver_[i], sideOf(j.a), sideOf(j.b));
+  }
+  for (const Index i : islands_.contacts(island_)) writeContact(rows, i);
+}
+
+void BulletSolver::writeContact(RowSolver& rows, Index index) {
+  const Contact& c = step_->contacts[index];
+  const engine::WorldParameters& world = step_->model.parameters;
+  const engine::Surface& s = c.surface;
+  const double dt = step_->dt;
+  Row row{.a = sideOf(c.bodyA), .b = sideOf(c.bodyB)};
+  row.pointA = row.pointB = c.position;
+  // Along the normal: what is beyond the allowed depth is pushed out; up to it the bodies may approach.
+  const double excess = c.depth - world.contactSurfaceLayer;
+  row.linear = c.normal;
+  row.target = (excess > 0 ? (s.softErpOn ? s.softErp : world.erp) : 1.0) * excess / dt;
+  row.softness = (s.softCfmOn ? s.softCfm : world.cfm) / dt;
+  row.low = 0;
+  if (s.bounceOn) {
+    const auto speedOf = [&](Index body) {
+      if (body == kNone) return 0.0;
+      const DynamicState& b = step_->state.bodies[body];
+      return c.normal.dot(b.linearVelocity + b.angularVelocity.cross(c.position - b.position));
+    };
+    const double approach = speedOf(c.bodyB) - speedOf(c.bodyA);
+    if (approach > s.bounceVelocity) row.target = std::max(row.target, s.bounce * approach);
+  }
+  ContactRows& own = contactRows_.emplace_back();
+  own.contact = index;
+  own.normal = rows.addNormal(row);
+  if (s.mu <= 0) return;
+  // Across it: friction.
+  own.bounded = !s.pyramid && std::isfinite(s.mu);
+  perpendicularBasis(c.normal, own.tangents[0], own.tangents[1]);
+  row.target = 0;
+  for (const std::size_t i : {0, 1}) {
+    row.linear = own.tangents[i];
+    row.softness = (world.cfm + (s.slipOn ? (i == 0 ? s.slip1 : s.slip2) : 0)) / dt;
+    row.low = own.bounded ? -s.mu * dt : -HUGE_VAL;
+    row.high = -row.low;
+    own.friction[i] = own.bounded ? rows.addRow(row) : rows.addFriction(row, own.normal, s.mu);
+  }
+}
+
+void BulletSolver::readContactForces(engine::Step& step) const {
+  for (const ContactRows& r : contactRows_) {
+    Contact& c = step.contacts[r.contact];
+    if (!c.feedback) continue;
+    Vec3 impulse = rows_.impulseOfNormal(r.normal) * c.normal;
+    for (const std::size_t i : {0, 1})
+      if (r.friction[i] >= 0)
+        impulse +=
+            (r.bounded ? rows_.impulseOfRow(r.friction[i]) : rows_.impulseOfFriction(r.friction[i])) * r.tangents[i];
+    c.forceOnA = impulse / step.dt;
+  }
+}
+
+}  // namespace spark::bullet

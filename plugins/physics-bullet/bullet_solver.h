@@ -1,0 +1,50 @@
+#pragma once
+/// \file
+/// Steps a world by Bullet.
+
+#include "bullet_detector.h"
+#include "islands.h"
+#include "row_solver.h"
+#include "tree_body.h"
+
+namespace spark::bullet {
+
+/// One world. It keeps nothing from step to step but what follows from the model.
+class BulletSolver : public engine::ISolver, private RowSource {
+ public:
+  /// `iterations`: over the rows of an island, at most; the engine's.
+  explicit BulletSolver(const int& iterations) : iterations_(iterations) {}
+  void compile(const engine::Model& model, const engine::State& state) override;
+  void step(engine::Step& step) override;
+  engine::IDetector* detector() override { return &detector_; }
+
+ private:
+  /// The rows of a contact.
+  struct ContactRows {
+    Index contact = 0;
+    int normal = 0;
+    std::array<int, 2> friction{-1, -1};  ///< -1: none
+    bool bounded = false;                 ///< friction is bounded by a force: its rows are among those of joints
+    std::array<Vec3, 2> tangents;
+  };
+  void stepIsland(engine::Step& step, std::size_t island);
+  void write(RowSolver& rows) override;
+  void writeContact(RowSolver& rows, Index index);
+  void readContactForces(engine::Step& step) const;
+  Side sideOf(Index body);
+
+  const int& iterations_;
+  BulletDetector detector_;
+  RowSolver rows_;
+  Scratch scratch_;
+  std::vector<std::unique_ptr<TreeBody>> trees_;
+  std::vector<Index> treeOf_, linkOf_;  ///< by body
+  std::vector<Index> leftOver_;         ///< joints in no tree
+  Islands islands_;
+  // While a step runs.
+  const engine::Step* step_ = nullptr;
+  std::size_t island_ = 0;
+  std::vector<ContactRows> contactRows_;
+};
+
+}  // namespace spark::bullet
