@@ -35,23 +35,20 @@ BulletDetector::BulletDetector() : dispatcher_(&configuration_) {
   configuration_.setConvexConvexMultipointIterations(4, 4);
 }
 
-void BulletDetector::setJoined(const Model& model) {
+void BulletDetector::update(const Model& model, const State& state) {
   joined_.clear();
   engine::forEachJoined(model, [&](Index a, Index b) { joined_.emplace_back(std::min(a, b), std::max(a, b)); });
   std::sort(joined_.begin(), joined_.end());
-}
 
-void BulletDetector::compile(const Model& model, const State& state, std::span<const Index> edited) {
   std::vector<std::unique_ptr<Solid>> old = std::exchange(solids_, {});
   solids_.resize(model.geoms.size());
   for (auto& solid : old)
     if (const Index at = engine::indexOf(model.geoms, solid->id); at != kNone) solids_[at] = std::move(solid);
-  for (const Index i : edited) solids_[i].reset();
   bounds_.resize(solids_.size());
   poses_.resize(solids_.size());
   for (Index i = 0; i < solids_.size(); ++i) {
     const Geom& g = model.geoms[i];
-    if (!solids_[i] || solids_[i]->hasBody != (g.body != kNone)) solids_[i] = makeSolid(g);
+    if (!solids_[i] || !isMadeOf(*solids_[i], g)) solids_[i] = makeSolid(g);
     place(model, state, i);
   }
 }

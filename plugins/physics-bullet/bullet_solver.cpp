@@ -13,7 +13,7 @@ namespace spark::bullet {
 using engine::Contact;
 using engine::DynamicState;
 
-void BulletSolver::compile(const engine::Model& model, const engine::State&) {
+void BulletSolver::compile(const engine::Model& model, const engine::State& state) {
   Trees trees(model);
   leftOver_ = std::move(trees.leftOver);
   trees_.clear();
@@ -26,7 +26,7 @@ void BulletSolver::compile(const engine::Model& model, const engine::State&) {
     }
     trees_.push_back(std::make_unique<TreeBody>(model, std::move(tree)));
   }
-  detector_.setJoined(model);
+  detector_.update(model, state);
 }
 
 Side BulletSolver::sideOf(Index body) {

@@ -30,18 +30,20 @@ std::unique_ptr<btCollisionShape> hullOf(const ShapeDescription& s) {
   return hull;
 }
 
-std::unique_ptr<btCollisionShape> meshOf(const ShapeDescription& s, Solid& solid) {
-  solid.vertices = s.vertices;
-  solid.triangles.assign(s.triangles.begin(), s.triangles.end());
+std::unique_ptr<btCollisionShape> meshOf(Solid& solid) {
+  static_assert(sizeof(int) == sizeof(std::uint32_t));
+  ShapeDescription& s = solid.from;
   solid.mesh = std::make_unique<btTriangleIndexVertexArray>(
-      static_cast<int>(solid.triangles.size() / 3), solid.triangles.data(), static_cast<int>(3 * sizeof(int)),
-      static_cast<int>(solid.vertices.size() / 3), solid.vertices.data(), static_cast<int>(3 * sizeof(double)));
+      static_cast<int>(s.triangles.size() / 3), reinterpret_cast<int*>(s.triangles.data()),
+      static_cast<int>(3 * sizeof(int)), static_cast<int>(s.vertices.size() / 3), s.vertices.data(),
+      static_cast<int>(3 * sizeof(double)));
   auto mesh = std::make_unique<btBvhTriangleMeshShape>(solid.mesh.get(), true);
   mesh->setMargin(kMeshMargin);
   return mesh;
 }
 
-std::unique_ptr<btCollisionShape> shapeOf(const ShapeDescription& s, Solid& solid) {
+std::unique_ptr<btCollisionShape> shapeOf(Solid& solid) {
+  const ShapeDescription& s = solid.from;
   switch (s.shape) {
     case Shape::box:
       return std::make_unique<btBoxShape>(toBullet(Vec3(s.lengths / 2)));
@@ -53,7 +55,7 @@ std::unique_ptr<btCollisionShape> shapeOf(const ShapeDescription& s, Solid& soli
       return std::make_unique<btCylinderShapeZ>(btVector3(s.radius, s.radius, s.length / 2));
     case Shape::mesh:
       if (s.vertices.empty() || s.triangles.empty()) return nullptr;
-      return solid.hasBody ? hullOf(s) : meshOf(s, solid);
+      return solid.hasBody ? hullOf(s) : meshOf(solid);
     default:
       return nullptr;
   }
@@ -65,9 +67,16 @@ std::unique_ptr<Solid> makeSolid(const engine::Geom& geom) {
   auto solid = std::make_unique<Solid>();
   solid->id = geom.id;
   solid->hasBody = geom.body != engine::kNone;
-  solid->shape = shapeOf(geom.shape, *solid);
+  solid->from = geom.shape;
+  solid->shape = shapeOf(*solid);
   if (solid->shape) solid->object.setCollisionShape(solid->shape.get());
   return solid;
+}
+
+bool isMadeOf(const Solid& solid, const engine::Geom& geom) {
+  const ShapeDescription &a = solid.from, &b = geom.shape;
+  return solid.hasBody == (geom.body != engine::kNone) && a.shape == b.shape && a.lengths == b.lengths &&
+         a.radius == b.radius && a.length == b.length && a.vertices == b.vertices && a.triangles == b.triangles;
 }
 
 void pointsBelowPlane(const ShapeDescription& shape, const Pose& pose, const Vec3& normal, const Vec3& origin,

@@ -18,14 +18,16 @@ struct Solid {
   std::uint64_t id = 0;  ///< of the geom
   bool hasBody = false;  ///< a mesh is its convex hull then
   std::unique_ptr<btTriangleIndexVertexArray> mesh;
-  std::vector<double> vertices;
-  std::vector<int> triangles;
+  engine::ShapeDescription from;            ///< what the shape was made of; owns the mesh's numbers
   std::unique_ptr<btCollisionShape> shape;  ///< nullptr: it has no contacts, or is a plane
   btCollisionObject object;
 };
 
 /// Makes the shape of a geom.
 std::unique_ptr<Solid> makeSolid(const engine::Geom& geom);
+
+/// True when the geom has still the shape that the solid was made of.
+bool isMadeOf(const Solid& solid, const engine::Geom& geom);
 
 /// A point of a shape below a plane.
 struct PlanePoint {
