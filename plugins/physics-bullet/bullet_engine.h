@@ -16,21 +16,28 @@ class BulletEngine : public Leaf, public engine::IEngine {
     d.doc("Rigid bodies and contacts by Bullet, in coordinates of joints.");
     d.implements<engine::IEngine>();
     d.property("version", &BulletEngine::version).doc("Version of the library.");
+    d.property("direct", &BulletEngine::direct_)
+        .min(0)
+        .doc("Largest number of rows of constraints of an island that are solved directly; else by iterations.");
     d.property("iterations", &BulletEngine::iterations_)
         .min(1)
         .doc("Largest number of iterations over contacts, motors and stops in a step.");
+    d.property("tolerance", &BulletEngine::tolerance_)
+        .min(0)
+        .doc("Iterations end when they change no velocity by more than this [m/s or rad/s].");
   }
   Leaf& leaf() override { return *this; }
   engine::Capabilities capabilities() const override {
     return {.jointForces = false, .armature = true, .detects = true, .damping = true};
   }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
-    return std::make_unique<bullet::BulletSolver>(iterations_);
+    return std::make_unique<bullet::BulletSolver>(direct_, iterations_, tolerance_);
   }
 
  private:
   std::string version() const { return fmt::format("{}.{:02}", btGetVersion() / 100, btGetVersion() % 100); }
-  int iterations_ = 100;
+  int direct_ = 200, iterations_ = 100;
+  double tolerance_ = 1e-6;
 };
 
 }  // namespace spark

@@ -50,7 +50,7 @@ void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
     trees_[i]->accelerate(step.model, step.state, step.dt, scratch_);
     trees_[i]->multiBody().setCompanionId(-1);
   }
-  rows_.solve(*this, {.dt = step.dt, .iterations = iterations_});
+  rows_.solve(*this, {.dt = step.dt, .direct = direct_, .iterations = iterations_, .tolerance = tolerance_});
   readContactForces(step);
   for (const Index i : islands_.trees(island)) trees_[i]->move(step.state, step.dt, scratch_);
 }

@@ -12,8 +12,9 @@ namespace spark::bullet {
 /// One world. It keeps nothing from step to step but what follows from the model.
 class BulletSolver : public engine::ISolver, private RowSource {
  public:
-  /// `iterations`: over the rows of an island, at most; the engine's.
-  explicit BulletSolver(const int& iterations) : iterations_(iterations) {}
+  /// The numbers are those of the engine: see RowSolver::Options.
+  BulletSolver(const int& direct, const int& iterations, const double& tolerance)
+      : direct_(direct), iterations_(iterations), tolerance_(tolerance) {}
   void compile(const engine::Model& model, const engine::State& state) override;
   void step(engine::Step& step) override;
   engine::IDetector* detector() override { return &detector_; }
@@ -33,7 +34,9 @@ class BulletSolver : public engine::ISolver, private RowSource {
   void readContactForces(engine::Step& step) const;
   Side sideOf(Index body);
 
+  const int& direct_;
   const int& iterations_;
+  const double& tolerance_;
   BulletDetector detector_;
   RowSolver rows_;
   Scratch scratch_;

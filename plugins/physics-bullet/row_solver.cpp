@@ -6,6 +6,7 @@ namespace spark::bullet {
 
 void RowSolver::solve(RowSource& source, const Options& options) {
   source_ = &source;
+  direct_ = options.direct;
   info_.m_timeStep = options.dt;
   info_.m_numIterations = options.iterations;
   info_.m_leastSquaresResidualThreshold = options.tolerance * options.tolerance;

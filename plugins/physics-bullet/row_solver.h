@@ -3,6 +3,7 @@
 /// Rows of constraints between multi-bodies, solved by Bullet's iterations.
 
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
+#include <BulletDynamics/MLCPSolvers/btDantzigLCP.h>
 
 #include <vector>
 
@@ -37,11 +38,13 @@ class RowSource {
   virtual void write(class RowSolver& rows) = 0;
 };
 
-/// Projected Gauss-Seidel of Bullet, whose rows come from us.
+/// Bullet's solver of constraints of multi-bodies, whose rows come from us: directly where they are few, else by
+/// projected Gauss-Seidel.
 class RowSolver : public btMultiBodyConstraintSolver {
  public:
   struct Options {
     double dt = 0.01;      ///< s
+    int direct = 200;      ///< up to so many rows are solved directly
     int iterations = 100;  ///< at most
     /// Change of velocity in one iteration that ends them [m/s or rad/s].
     double tolerance = 1e-6;
@@ -67,6 +70,10 @@ class RowSolver : public btMultiBodyConstraintSolver {
   btScalar solveGroupCacheFriendlySetup(btCollisionObject** bodies, int numBodies, btPersistentManifold** manifolds,
                                         int numManifolds, btTypedConstraint** constraints, int numConstraints,
                                         const btContactSolverInfo& info, btIDebugDraw* drawer) override;
+  btScalar solveGroupCacheFriendlyIterations(btCollisionObject** bodies, int numBodies,
+                                             btPersistentManifold** manifolds, int numManifolds,
+                                             btTypedConstraint** constraints, int numConstraints,
+                                             const btContactSolverInfo& info, btIDebugDraw* drawer) override;
   btScalar solveGroupCacheFriendlyFinish(btCollisionObject** bodies, int numBodies,
                                          const btContactSolverInfo& info) override;
 
@@ -77,6 +84,22 @@ class RowSolver : public btMultiBodyConstraintSolver {
   void fill(const Row& row, const Side& side, double sign, btScalar* out);
   int deltaOf(btMultiBody& body);
 
+  /// Lists all rows in all_.
+  void gather();
+  /// False: they are too many, or it failed.
+  bool solveDirectly();
+  /// The velocity along `row` that a unit impulse of `by` gives.
+  double mobilityOf(const btMultiBodySolverConstraint& row, const btMultiBodySolverConstraint& by) const;
+
+  /// A linear complementarity problem, see btDantzigLCP.h.
+  struct Lcp {
+    std::vector<double> a, x, b, w, low, high;
+    std::vector<int> boundedBy;
+    btDantzigScratchMemory scratch;
+  };
+  Lcp lcp_;
+  int direct_ = 0;
+  std::vector<btMultiBodySolverConstraint*> all_;
   RowSource* source_ = nullptr;
   btContactSolverInfo info_;
   btAlignedObjectArray<btScalar> other_;  ///< Jacobian of the second side of one multi-body
