@@ -81,10 +81,10 @@ void BulletSolver::writeContact(RowSolver& rows, Index index) {
   const double dt = step_->dt;
   Row row{.a = sideOf(c.bodyA), .b = sideOf(c.bodyB)};
   row.pointA = row.pointB = c.position;
-  // Along the normal: what is beyond the allowed depth is pushed out; up to it the bodies may approach.
-  const double excess = c.depth - world.contactSurfaceLayer;
+  // Along the normal: what is beyond the allowed depth is pushed out.
+  const double excess = std::max(0.0, c.depth - world.contactSurfaceLayer);
   row.linear = c.normal;
-  row.target = (excess > 0 ? (s.softErpOn ? s.softErp : world.erp) : 1.0) * excess / dt;
+  row.target = (s.softErpOn ? s.softErp : world.erp) * excess / dt;
   row.softness = (s.softCfmOn ? s.softCfm : world.cfm) / dt;
   row.low = 0;
   if (s.bounceOn) {
@@ -106,7 +106,7 @@ void BulletSolver::writeContact(RowSolver& rows, Index index) {
   row.target = 0;
   for (const std::size_t i : {0, 1}) {
     row.linear = own.tangents[i];
-    row.softness = (world.cfm + (s.slipOn ? (i == 0 ? s.slip1 : s.slip2) : 0)) / dt;
+    row.softness = (s.slipOn ? (i == 0 ? s.slip1 : s.slip2) : world.cfm) / dt;
     row.low = own.bounded ? -s.mu * dt : -HUGE_VAL;
     row.high = -row.low;
     own.friction[i] = own.bounded ? rows.addRow(row) : rows.addFriction(row, own.normal, s.mu);
