@@ -14,12 +14,19 @@
 
 namespace spark::bullet {
 
-double RowSolver::mobilityOf(const btMultiBodySolverConstraint& row, const btMultiBodySolverConstraint& by) const {
+double RowSolver::mobilityOf(std::size_t index, std::size_t other) const {
+  // The matrix is symmetric, and a row of a single velocity has one element.
+  if (offsets_[index] < 0 && offsets_[other] >= 0) std::swap(index, other);
+  const btMultiBodySolverConstraint &row = *all_[index], &by = *all_[other];
+  const int offset = offsets_[index];
   double sum = 0;
   const auto add = [&](const btMultiBody* body, int place, int response) {
-    const int size = 6 + body->getNumDofs();
     const btScalar *j = &m_data.m_jacobians[place], *r = &m_data.m_deltaVelocitiesUnitImpulse[response];
-    for (int i = 0; i < size; ++i) sum += j[i] * r[i];
+    if (offset >= 0) {
+      sum += r[offset];
+      return;
+    }
+    for (int i = 0, size = 6 + body->getNumDofs(); i < size; ++i) sum += j[i] * r[i];
   };
   for (const bool first : {true, false}) {
     const btMultiBody* body = first ? row.m_multiBodyA : row.m_multiBodyB;
@@ -36,6 +43,7 @@ void RowSolver::gather() {
   for (auto* kind : {&m_multiBodyNonContactConstraints, &m_multiBodyNormalContactConstraints,
                      &m_multiBodyFrictionContactConstraints})
     for (int i = 0; i < kind->size(); ++i) all_.push_back(&(*kind)[i]);
+  offsets_.resize(all_.size(), -1);
 }
 
 bool RowSolver::solveDirectly() {
@@ -51,7 +59,7 @@ bool RowSolver::solveDirectly() {
   l.boundedBy.assign(n, -1);
   for (std::size_t i = 0; i < n; ++i) {
     const btMultiBodySolverConstraint& row = *all_[i];
-    for (std::size_t k = 0; k < i; ++k) l.a[i * n + k] = l.a[k * n + i] = mobilityOf(row, *all_[k]);
+    for (std::size_t k = 0; k < i; ++k) l.a[i * n + k] = l.a[k * n + i] = mobilityOf(i, k);
     // A row that repeats another one has an answer, too.
     l.a[i * n + i] = (1 + 1e-9) / row.m_jacDiagABInv;
     l.b[i] = row.m_rhs / row.m_jacDiagABInv;

@@ -19,6 +19,7 @@ btScalar RowSolver::solveGroupCacheFriendlySetup(btCollisionObject**, int, btPer
                                                  btTypedConstraint**, int, const btContactSolverInfo& info,
                                                  btIDebugDraw*) {
   btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(nullptr, 0, nullptr, 0, nullptr, 0, info, nullptr);
+  offsets_.clear();
   source_->write(*this);
   return 0;
 }
@@ -28,7 +29,10 @@ btScalar RowSolver::solveGroupCacheFriendlyFinish(btCollisionObject**, int, cons
   return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyFinish(nullptr, 0, info);
 }
 
-int RowSolver::addRow(const Row& row) { return add(m_multiBodyNonContactConstraints, row); }
+int RowSolver::addRow(const Row& row) {
+  offsets_.push_back(row.offset);
+  return add(m_multiBodyNonContactConstraints, row);
+}
 int RowSolver::addNormal(const Row& row) { return add(m_multiBodyNormalContactConstraints, row); }
 int RowSolver::addFriction(const Row& row, int normal, double mu) {
   const int at = add(m_multiBodyFrictionContactConstraints, row);

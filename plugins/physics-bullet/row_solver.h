@@ -84,12 +84,12 @@ class RowSolver : public btMultiBodyConstraintSolver {
   void fill(const Row& row, const Side& side, double sign, btScalar* out);
   int deltaOf(btMultiBody& body);
 
-  /// Lists all rows in all_.
+  /// Lists all rows in all_ and offsets_.
   void gather();
   /// False: they are too many, or it failed.
   bool solveDirectly();
-  /// The velocity along `row` that a unit impulse of `by` gives.
-  double mobilityOf(const btMultiBodySolverConstraint& row, const btMultiBodySolverConstraint& by) const;
+  /// The velocity along a row that a unit impulse along the other one gives.
+  double mobilityOf(std::size_t row, std::size_t other) const;
 
   /// A linear complementarity problem, see btDantzigLCP.h.
   struct Lcp {
@@ -100,6 +100,7 @@ class RowSolver : public btMultiBodyConstraintSolver {
   Lcp lcp_;
   int direct_ = 0;
   std::vector<btMultiBodySolverConstraint*> all_;
+  std::vector<int> offsets_;  ///< Row::offset, of all rows
   RowSource* source_ = nullptr;
   btContactSolverInfo info_;
   btAlignedObjectArray<btScalar> other_;  ///< Jacobian of the second side of one multi-body
