@@ -27,9 +27,7 @@ class BulletEngine : public Leaf, public engine::IEngine {
         .doc("Iterations end when they change no velocity by more than this [m/s or rad/s].");
   }
   Leaf& leaf() override { return *this; }
-  engine::Capabilities capabilities() const override {
-    return {.jointForces = false, .armature = true, .detects = true, .damping = true};
-  }
+  engine::Capabilities capabilities() const override { return {.armature = true, .detects = true, .damping = true}; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<bullet::BulletSolver>(direct_, iterations_, tolerance_);
   }

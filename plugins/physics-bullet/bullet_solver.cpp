@@ -27,6 +27,10 @@ void BulletSolver::compile(const engine::Model& model, const engine::State& stat
     trees_.push_back(std::make_unique<TreeBody>(model, std::move(tree)));
   }
   detector_.update(model, state);
+  forces_.compile(model);
+  measured_.clear();
+  for (const auto& tree : trees_) measured_.push_back(JointForces::measures(model, tree->links()));
+  anyMeasured_ = std::any_of(model.joints.begin(), model.joints.end(), [](const auto& j) { return j.wantsFeedback; });
 }
 
 Side BulletSolver::sideOf(Index body) {
@@ -45,14 +49,20 @@ void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
   step_ = &step;
   island_ = island;
   contactRows_.clear();
+  loopRows_.clear();
   for (const Index i : islands_.trees(island)) {
+    if (anyMeasured_) forces_.begin(step, trees_[i]->links());
     trees_[i]->take(step.model, step.state);
     trees_[i]->accelerate(step.model, step.state, step.dt, scratch_);
     trees_[i]->multiBody().setCompanionId(-1);
   }
   rows_.solve(*this, {.dt = step.dt, .direct = direct_, .iterations = iterations_, .tolerance = tolerance_});
   readContactForces(step);
-  for (const Index i : islands_.trees(island)) trees_[i]->move(step.state, step.dt, scratch_);
+  if (anyMeasured_) readLoopForces(step);
+  for (const Index i : islands_.trees(island)) {
+    trees_[i]->move(step.state, step.dt, scratch_);
+    if (measured_[i]) forces_.end(step, trees_[i]->links());
+  }
 }
 
 void BulletSolver::write(RowSolver& rows) {
@@ -69,7 +79,9 @@ void BulletSolver::write(RowSolver& rows) {
   }
   for (const Index i : islands_.joints(island_)) {
     const engine::Joint& j = step.model.joints[leftOver_[i]];
+    const int first = rows.rows();
     joints.writeJoint(leftOver_[i], sideOf(j.a), sideOf(j.b));
+    loopRows_.push_back({leftOver_[i], first, rows.rows()});
   }
   for (const Index i : islands_.contacts(island_)) writeContact(rows, i);
 }
@@ -113,16 +125,40 @@ void BulletSolver::writeContact(RowSolver& rows, Index index) {
   }
 }
 
-void BulletSolver::readContactForces(engine::Step& step) const {
+void BulletSolver::readLoopForces(engine::Step& step) {
+  for (const LoopRows& loop : loopRows_) {
+    const engine::Joint& j = step.model.joints[loop.joint];
+    engine::JointState sum;
+    const auto centreOf = [&](Index body) {
+      return body == kNone ? Vec3(Vec3::Zero()) : step.state.bodies[body].position;
+    };
+    for (int i = loop.first; i < loop.last; ++i) {
+      const Row& row = rows_.row(i);
+      const double strength = rows_.impulseOfRow(i) / step.dt;
+      const Vec3 force = strength * row.linear, torque = strength * row.angular;
+      forces_.add(j.a, force, torque, row.pointA);
+      forces_.add(j.b, -force, -torque, row.pointB);
+      sum.forceA += force, sum.torqueA += torque + (row.pointA - centreOf(j.a)).cross(force);
+      sum.forceB -= force, sum.torqueB -= torque + (row.pointB - centreOf(j.b)).cross(force);
+    }
+    if (j.wantsFeedback) step.state.joints[loop.joint] = sum;
+  }
+}
+
+void BulletSolver::readContactForces(engine::Step& step) {
   for (const ContactRows& r : contactRows_) {
     Contact& c = step.contacts[r.contact];
-    if (!c.feedback) continue;
+    if (!c.feedback && !anyMeasured_) continue;
     Vec3 impulse = rows_.impulseOfNormal(r.normal) * c.normal;
     for (const std::size_t i : {0, 1})
       if (r.friction[i] >= 0)
         impulse +=
             (r.bounded ? rows_.impulseOfRow(r.friction[i]) : rows_.impulseOfFriction(r.friction[i])) * r.tangents[i];
-    c.forceOnA = impulse / step.dt;
+    const Vec3 force = impulse / step.dt;
+    if (c.feedback) c.forceOnA = force;
+    if (!anyMeasured_) continue;
+    forces_.add(c.bodyA, force, Vec3::Zero(), c.position);
+    forces_.add(c.bodyB, -force, Vec3::Zero(), c.position);
   }
 }
 

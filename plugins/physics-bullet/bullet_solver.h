@@ -4,6 +4,7 @@
 
 #include "bullet_detector.h"
 #include "islands.h"
+#include "joint_forces.h"
 #include "row_solver.h"
 #include "tree_body.h"
 
@@ -28,10 +29,16 @@ class BulletSolver : public engine::ISolver, private RowSource {
     bool bounded = false;                 ///< friction is bounded by a force: its rows are among those of joints
     std::array<Vec3, 2> tangents;
   };
+  /// The rows of a joint in no tree, that is measured or acts on a measured tree.
+  struct LoopRows {
+    Index joint = 0;
+    int first = 0, last = 0;
+  };
   void stepIsland(engine::Step& step, std::size_t island);
   void write(RowSolver& rows) override;
   void writeContact(RowSolver& rows, Index index);
-  void readContactForces(engine::Step& step) const;
+  void readContactForces(engine::Step& step);
+  void readLoopForces(engine::Step& step);
   Side sideOf(Index body);
 
   const int& direct_;
@@ -43,11 +50,15 @@ class BulletSolver : public engine::ISolver, private RowSource {
   std::vector<std::unique_ptr<TreeBody>> trees_;
   std::vector<Index> treeOf_, linkOf_;  ///< by body
   std::vector<Index> leftOver_;         ///< joints in no tree
+  std::vector<std::uint8_t> measured_;  ///< by tree: a joint's force is wanted
+  bool anyMeasured_ = false;            ///< of the joints in trees and of the others
+  JointForces forces_;
   Islands islands_;
   // While a step runs.
   const engine::Step* step_ = nullptr;
   std::size_t island_ = 0;
   std::vector<ContactRows> contactRows_;
+  std::vector<LoopRows> loopRows_;
 };
 
 }  // namespace spark::bullet

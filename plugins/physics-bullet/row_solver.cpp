@@ -20,6 +20,7 @@ btScalar RowSolver::solveGroupCacheFriendlySetup(btCollisionObject**, int, btPer
                                                  btIDebugDraw*) {
   btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(nullptr, 0, nullptr, 0, nullptr, 0, info, nullptr);
   offsets_.clear();
+  kept_.clear();
   source_->write(*this);
   return 0;
 }
@@ -31,6 +32,7 @@ btScalar RowSolver::solveGroupCacheFriendlyFinish(btCollisionObject**, int, cons
 
 int RowSolver::addRow(const Row& row) {
   offsets_.push_back(row.offset);
+  kept_.push_back(row);
   return add(m_multiBodyNonContactConstraints, row);
 }
 int RowSolver::addNormal(const Row& row) { return add(m_multiBodyNormalContactConstraints, row); }

@@ -58,10 +58,10 @@ class RowSolver : public btMultiBodyConstraintSolver {
   int addNormal(const Row& row);
   /// Friction of at most `mu` times the normal force of the row `normal`.
   int addFriction(const Row& row, int normal, double mu);
-  /// The present velocity along a row.
-  double velocityOf(const Row& row);
 
-  // The impulses of the last solve(), until the next one.
+  // The rows and impulses of the last solve(), until the next one.
+  const Row& row(int index) const { return kept_[static_cast<std::size_t>(index)]; }
+  int rows() const { return m_multiBodyNonContactConstraints.size(); }
   double impulseOfRow(int row) const { return m_multiBodyNonContactConstraints[row].m_appliedImpulse; }
   double impulseOfNormal(int row) const { return m_multiBodyNormalContactConstraints[row].m_appliedImpulse; }
   double impulseOfFriction(int row) const { return m_multiBodyFrictionContactConstraints[row].m_appliedImpulse; }
@@ -101,6 +101,7 @@ class RowSolver : public btMultiBodyConstraintSolver {
   int direct_ = 0;
   std::vector<btMultiBodySolverConstraint*> all_;
   std::vector<int> offsets_;  ///< Row::offset, of all rows
+  std::vector<Row> kept_;     ///< those of addRow()
   RowSource* source_ = nullptr;
   btContactSolverInfo info_;
   btAlignedObjectArray<btScalar> other_;  ///< Jacobian of the second side of one multi-body
