@@ -129,17 +129,17 @@ void BulletSolver::readLoopForces(engine::Step& step) {
   for (const LoopRows& loop : loopRows_) {
     const engine::Joint& j = step.model.joints[loop.joint];
     engine::JointState sum;
-    const auto centreOf = [&](Index body) {
-      return body == kNone ? Vec3(Vec3::Zero()) : step.state.bodies[body].position;
+    const auto add = [&](Index body, const Vec3& force, const Vec3& torque, const Vec3& point, Vec3& f, Vec3& t) {
+      if (body == kNone) return;
+      forces_.add(body, force, torque, point);
+      f += force, t += torque + (point - step.state.bodies[body].position).cross(force);
     };
     for (int i = loop.first; i < loop.last; ++i) {
       const Row& row = rows_.row(i);
       const double strength = rows_.impulseOfRow(i) / step.dt;
       const Vec3 force = strength * row.linear, torque = strength * row.angular;
-      forces_.add(j.a, force, torque, row.pointA);
-      forces_.add(j.b, -force, -torque, row.pointB);
-      sum.forceA += force, sum.torqueA += torque + (row.pointA - centreOf(j.a)).cross(force);
-      sum.forceB -= force, sum.torqueB -= torque + (row.pointB - centreOf(j.b)).cross(force);
+      add(j.a, force, torque, row.pointA, sum.forceA, sum.torqueA);
+      add(j.b, -force, -torque, row.pointB, sum.forceB, sum.torqueB);
     }
     if (j.wantsFeedback) step.state.joints[loop.joint] = sum;
   }

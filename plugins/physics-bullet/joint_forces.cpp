@@ -45,13 +45,17 @@ void JointForces::end(engine::Step& step, const std::vector<Link>& links) {
     const Balance& b = balances_[link.body];
     const Vec3 force = (body.mass * s.linearVelocity - b.momentum) / step.dt - b.force;
     const Vec3 torque = (angularMomentumOf(body, s) - b.angularMomentum) / step.dt - b.torque;
-    // The joint acts on the other body at the same place; the world's centre is its origin.
-    const Index parent = link.parent == kNone ? kNone : links[link.parent].body;
-    add(parent, -force, -torque, b.position);
-    if (!step.model.joints[link.joint].wantsFeedback) continue;
-    const Vec3 other = parent == kNone ? Vec3(Vec3::Zero()) : balances_[parent].position;
-    const Vec3 reaction = -torque - (b.position - other).cross(force);
     engine::JointState& out = step.state.joints[link.joint];
+    const bool wanted = step.model.joints[link.joint].wantsFeedback;
+    if (link.parent == kNone) {
+      if (wanted) out = {force, torque, Vec3::Zero(), Vec3::Zero()};
+      continue;
+    }
+    // The joint acts on the parent at the same place.
+    const Index parent = links[link.parent].body;
+    add(parent, -force, -torque, b.position);
+    if (!wanted) continue;
+    const Vec3 reaction = -torque - (b.position - balances_[parent].position).cross(force);
     out = link.childIsA ? engine::JointState{force, torque, -force, reaction}
                         : engine::JointState{-force, reaction, force, torque};
   }
