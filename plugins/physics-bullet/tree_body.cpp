@@ -21,6 +21,26 @@ const DynamicState& worldState() {
   return state;
 }
 
+/// The gyroscopic torque on a body, world frame, that turns its spin as Euler's equations do in a whole step. The
+/// torque at the begin of the step, which Bullet would take, gains energy until a body that tumbles at 12 rad/s in
+/// steps of 20 ms bursts.
+Vec3 gyroscopicTorque(const engine::Body& body, const DynamicState& s, double dt) {
+  const Vec3 start = s.rotation.transpose() * s.angularVelocity;
+  const auto rate = [&](const Vec3& w) { return Vec3(body.inverseInertia * (body.inertia * w).cross(w)); };
+  if (rate(start).isZero(0) || !start.allFinite()) return Vec3::Zero();
+  // Runge-Kutta of order 4, in parts of about a quarter of a radian.
+  const double parts = std::clamp(std::ceil(4 * dt * start.norm()), 1.0, 20.0), h = dt / parts;
+  Vec3 w = start;
+  for (int i = 0; i < static_cast<int>(parts); ++i) {
+    const Vec3 a = rate(w), b = rate(w + h / 2 * a), c = rate(w + h / 2 * b), d = rate(w + h * c);
+    w += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  // It keeps its energy.
+  const double before = start.dot(body.inertia * start), after = w.dot(body.inertia * w);
+  if (!(after <= before)) w = after < HUGE_VAL ? Vec3(w * std::sqrt(before / after)) : start;
+  return s.rotation * (body.inertia * (w - start)) / dt;
+}
+
 /// One of Bullet's joints in the chain that a joint becomes.
 struct Step {
   int axis;  ///< see Dof
@@ -85,6 +105,7 @@ void TreeBody::build(const Model& model) {
   body_->setAngularDamping(0);
   body_->setMaxCoordinateVelocity(HUGE_VAL);
   body_->setCanSleep(false);
+  body_->setUseGyroTerm(false);
 }
 
 void TreeBody::addLink(const Model& model, Index index, int& next) {
@@ -210,7 +231,8 @@ void TreeBody::accelerate(const Model& model, const State& state, double dt, Scr
     const engine::Body& b = model.bodies[index];
     Vec3 force = state.bodies[index].force;
     if (b.gravity) force += b.mass * model.parameters.gravity;
-    const btVector3 f = toBullet(force), t = toBullet(state.bodies[index].torque);
+    const Vec3 torque = state.bodies[index].torque + gyroscopicTorque(b, state.bodies[index], dt);
+    const btVector3 f = toBullet(force), t = toBullet(torque);
     if (const int link = places_[i].link; link < 0)
       body_->addBaseForce(f), body_->addBaseTorque(t);
     else
