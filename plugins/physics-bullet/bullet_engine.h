@@ -34,7 +34,7 @@ class BulletEngine : public Leaf, public engine::IEngine {
 
  private:
   std::string version() const { return fmt::format("{}.{:02}", btGetVersion() / 100, btGetVersion() % 100); }
-  int direct_ = 200, iterations_ = 100;
+  int direct_ = 1000, iterations_ = 300;
   double tolerance_ = 1e-6;
 };
 
