@@ -12,6 +12,9 @@ using engine::JointType;
 
 namespace {
 
+/// Distance from a stop beyond which no step reaches it, unless the axis moves [rad or m].
+constexpr double kReach = 0.1;
+
 /// A joint that is in no tree.
 struct JointWriter {
   const engine::Step& step;
@@ -138,6 +141,7 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
   // A stop begins to act in the step that would pass it.
   const auto stop = [&](double at, double sign) {
     const double excess = sign * (at - position);  // above 0: beyond the stop
+    if (excess < -kReach - 2 * std::abs(rate) * dt) return;
     Row r = row;
     r.target = sign * (excess > 0 ? axis.ode.stopErp : 1.0) * excess / dt;
     const double approach = -sign * rate;

@@ -21,6 +21,7 @@ btScalar RowSolver::solveGroupCacheFriendlySetup(btCollisionObject**, int, btPer
   btMultiBodyConstraintSolver::solveGroupCacheFriendlySetup(nullptr, 0, nullptr, 0, nullptr, 0, info, nullptr);
   offsets_.clear();
   kept_.clear();
+  last_ = {};
   source_->write(*this);
   return 0;
 }
@@ -66,7 +67,10 @@ void RowSolver::fill(const Row& row, const Side& side, double sign, btScalar* ou
 }
 
 int RowSolver::addJacobian(const Row& row, const Side& side, double sign) {
+  // Motor and stop of an axis share theirs.
+  if (row.offset >= 0 && row.offset == last_.offset && side.body == last_.body) return last_.place;
   const int size = 6 + side.body->getNumDofs(), at = m_data.m_jacobians.size();
+  last_ = {side.body, row.offset, at};
   m_data.m_jacobians.resizeNoInitialize(at + size);
   m_data.m_deltaVelocitiesUnitImpulse.resizeNoInitialize(at + size);
   fill(row, side, sign, &m_data.m_jacobians[at]);

@@ -44,7 +44,7 @@ class RowSolver : public btMultiBodyConstraintSolver {
  public:
   struct Options {
     double dt = 0.01;      ///< s
-    int direct = 1000;      ///< up to so many rows are solved directly
+    int direct = 1000;     ///< up to so many rows are solved directly
     int iterations = 300;  ///< at most
     /// Change of velocity in one iteration that ends them [m/s or rad/s].
     double tolerance = 1e-6;
@@ -102,6 +102,12 @@ class RowSolver : public btMultiBodyConstraintSolver {
   std::vector<btMultiBodySolverConstraint*> all_;
   std::vector<int> offsets_;  ///< Row::offset, of all rows
   std::vector<Row> kept_;     ///< those of addRow()
+  /// The last Jacobian of a single velocity.
+  struct Single {
+    const btMultiBody* body = nullptr;
+    int offset = -1, place = 0;
+  };
+  Single last_;
   RowSource* source_ = nullptr;
   btContactSolverInfo info_;
   btAlignedObjectArray<btScalar> other_;  ///< Jacobian of the second side of one multi-body
