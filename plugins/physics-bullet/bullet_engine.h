@@ -12,9 +12,10 @@ namespace spark {
 class BulletEngine : public Leaf, public engine::IEngine {
   SPARK_CLASS(BulletEngine, Leaf)
  public:
+  static constexpr engine::Capabilities kCapabilities{.armature = true, .detects = true, .damping = true};
   static void describe(Description<BulletEngine>& d) {
     d.doc("Rigid bodies and contacts by Bullet, in coordinates of joints.");
-    d.implements<engine::IEngine>();
+    engine::describeEngine(d);
     d.property("version", &BulletEngine::version).doc("Version of the library.");
     d.property("direct", &BulletEngine::direct_)
         .min(0)
@@ -27,7 +28,7 @@ class BulletEngine : public Leaf, public engine::IEngine {
         .doc("Iterations end when they change no velocity by more than this [m/s or rad/s].");
   }
   Leaf& leaf() override { return *this; }
-  engine::Capabilities capabilities() const override { return {.armature = true, .detects = true, .damping = true}; }
+  engine::Capabilities capabilities() const override { return kCapabilities; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<bullet::BulletSolver>(direct_, iterations_, tolerance_);
   }
