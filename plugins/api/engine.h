@@ -8,6 +8,9 @@
 ///     detect     IDetector: contacts of the present poses; then collision handlers complete them
 ///     step       ISolver: solves joints and contacts, integrates
 ///
+/// An engine whose contacts exist only within its step says so (Capabilities::late): it asks IContactSink for each pair
+/// what to do, and reports at the end. Collision handlers then run after the step, in the order of the geoms.
+///
 /// An engine of point masses needs create() and step() alone.
 
 #include <memory>
@@ -97,6 +100,20 @@ class ICollision : public PerWorld<IDetector> {
   SPARK_INTERFACE(ICollision, 2);
 };
 
+/// Takes the contacts of an engine that finds them within its step (Capabilities::late).
+class IContactSink {
+ public:
+  virtual ~IContactSink() = default;
+  /// Most points of two geoms.
+  virtual int perPair() const = 0;
+  /// Two geoms touch; `points` are complete but for `solve`, `surface` and `feedback`, which it sets. Called in any
+  /// thread, in several at a time, at most once for a pair and step. False for pairs that are of no interest.
+  virtual bool decide(std::span<Contact> points) = 0;
+  /// All contacts of the step, after it, with forceOnA where `feedback` is true; in any order. Called once, in the
+  /// thread of the step.
+  virtual void report(std::span<const Contact> contacts) = 0;
+};
+
 /// One step of a world.
 struct Step {
   const Model& model;
@@ -105,6 +122,7 @@ struct Step {
   double dt = 0;                ///< s, above 0
   /// By body: 1 for the bodies that are to be stepped, whole islands; the others stay unchanged. Empty: all.
   std::span<const std::uint8_t> only;
+  IContactSink* sink = nullptr;  ///< of an engine with Capabilities::late; others have `contacts`
   bool steps(Index body) const { return only.empty() || only[body] != 0; }
 };
 
@@ -120,8 +138,8 @@ class ISolver {
   /// Does not throw, and does not allocate while structure and number of contacts repeat. Results may be no numbers:
   /// the caller puts such bodies back.
   virtual void step(Step& step) = 0;
-  /// What finds the contacts, of an engine with Capabilities::detects: the solver is compiled before it, also when
-  /// Model::collision changed. Otherwise nullptr.
+  /// What finds the contacts, of an engine with Capabilities::detects; otherwise nullptr. Before detect() the solver is
+  /// compiled where it has to be, also when Model::collision changed, and then the detector with the edited geoms.
   virtual IDetector* detector() { return nullptr; }
 };
 
@@ -138,6 +156,7 @@ struct Capabilities {
   bool restores = true;      ///< a restored world continues bit for bit, also with another solver of the engine
   bool parts = true;         ///< it can step some islands alone (Step::only), as another engine's deferred engine
   bool detects = false;      ///< it finds contacts itself, and needs no ICollision
+  bool late = false;         ///< it finds contacts within its step, and passes them to Step::sink; needs no ICollision
   bool controls = false;     ///< it applies State::controls. Otherwise they come as forces on the bodies; in both cases
                              ///< dry friction of controlled axes comes as a motor of speed 0
   bool damping = false;      ///< it applies JointAxis::damping. Otherwise it comes as forces
@@ -162,7 +181,8 @@ inline constexpr NamedCapability kNamedCapabilities[] = {
     {"sleep", &Capabilities::sleeps},
     {"surfaces of contacts: bounce, slip, friction as a force", &Capabilities::surfaces},
     {"continues bit for bit from a saved state, or when it is replaced", &Capabilities::restores},
-    {"contacts of its own", &Capabilities::detects},
+    {"contacts of its own, before the step", &Capabilities::detects},
+    {"contacts of its own, within the step", &Capabilities::late},
 };
 
 /// The names of those that it has, or lacks.

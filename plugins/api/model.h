@@ -314,7 +314,8 @@ struct AxisControl {
   Control control;
 };
 
-/// What a step measures at a joint with `wantsFeedback`: force [N] and torque about the body's centre [Nm] on a and b.
+/// What a step measures at a joint with `wantsFeedback`: force [N] and torque about the body's centre [Nm] on a and b;
+/// zero on the world.
 struct JointState {
   Vec3 forceA = Vec3::Zero(), torqueA = Vec3::Zero(), forceB = Vec3::Zero(), torqueB = Vec3::Zero();
 };
@@ -361,7 +362,8 @@ struct Surface {
   /// True: mu is a coefficient, and friction is bounded by mu times the normal force of a solution without friction
   /// (friction pyramid). False: mu is a force.
   bool pyramid = false;
-  double mu = HUGE_VAL;         ///< bound of friction along each tangent: a force [N], or a coefficient
+  /// Bound of friction along each tangent: a force [N], or a coefficient. Infinite: what touches does not slide.
+  double mu = HUGE_VAL;
   double bounce = 0;            ///< restitution, 0..1
   double bounceVelocity = 0;    ///< smallest approach speed at which the contact bounces [m/s]
   double softErp = 0;           ///< error reduction parameter of the contact

@@ -35,7 +35,7 @@ BulletDetector::BulletDetector() : dispatcher_(&configuration_) {
   configuration_.setConvexConvexMultipointIterations(4, 4);
 }
 
-void BulletDetector::update(const Model& model, const State& state) {
+void BulletDetector::compile(const Model& model, const State& state, std::span<const Index>) {
   joined_.clear();
   engine::forEachJoined(model, [&](Index a, Index b) { joined_.emplace_back(std::min(a, b), std::max(a, b)); });
   std::sort(joined_.begin(), joined_.end());

@@ -17,12 +17,7 @@ using engine::kNone;
 class BulletDetector : public engine::IDetector {
  public:
   BulletDetector();
-  /// Takes geoms, and the pairs of bodies that joints connect, from a model that changed. The physics server compiles a
-  /// solver alone, not the detector that is a part of it, and tells it no edited geoms.
-  void update(const engine::Model& model, const engine::State& state);
-  void compile(const engine::Model& model, const engine::State& state, std::span<const Index>) override {
-    update(model, state);
-  }
+  void compile(const engine::Model& model, const engine::State& state, std::span<const Index> edited) override;
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
               engine::Contacts& out) override;
 

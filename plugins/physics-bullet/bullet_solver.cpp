@@ -13,7 +13,7 @@ namespace spark::bullet {
 using engine::Contact;
 using engine::DynamicState;
 
-void BulletSolver::compile(const engine::Model& model, const engine::State& state) {
+void BulletSolver::compile(const engine::Model& model, const engine::State&) {
   Trees trees(model);
   leftOver_ = std::move(trees.leftOver);
   trees_.clear();
@@ -26,7 +26,6 @@ void BulletSolver::compile(const engine::Model& model, const engine::State& stat
     }
     trees_.push_back(std::make_unique<TreeBody>(model, std::move(tree)));
   }
-  detector_.update(model, state);
   forces_.compile(model);
   measured_.clear();
   for (const auto& tree : trees_) measured_.push_back(JointForces::measures(model, tree->links()));

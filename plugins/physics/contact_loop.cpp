@@ -1,5 +1,7 @@
 #include "contact_loop.h"
 
+#include <algorithm>
+
 namespace spark::physics {
 namespace {
 
@@ -44,22 +46,34 @@ bool pairCounts(void* ownerA, void* ownerB) {
   return (solid || a.listens() || b.listens()) && a.mayCollideWith(b);
 }
 
-void runHandlers(engine::Contacts& contacts, Kernel& kernel) {
+void decide(std::span<engine::Contact> pair) {
+  const Collider& a = *static_cast<const Collider*>(pair.front().ownerA);
+  const Collider& b = *static_cast<const Collider*>(pair.front().ownerB);
+  if (!a.solid() || !b.solid() || (!a.hasBody() && !b.hasBody())) return;
+  // All points of a solid pair share one surface.
+  const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
+  for (engine::Contact& c : pair) {
+    c.solve = true;
+    c.surface = surface;
+  }
+}
+
+void sortByPair(engine::Contacts& contacts, const engine::Model& model) {
+  const auto key = [&](const engine::Contact& c) {
+    return std::pair(model.geoms[c.geomA].id, model.geoms[c.geomB].id);
+  };
+  std::stable_sort(contacts.begin(), contacts.end(),
+                   [&](const engine::Contact& x, const engine::Contact& y) { return key(x) < key(y); });
+}
+
+void runHandlers(engine::Contacts& contacts, Kernel& kernel, bool decided) {
   const std::uint64_t version = kernel.structureVersion();
   for (std::size_t i = 0, end; i < contacts.size(); i = end) {
     end = endOfPair(contacts, i);
     Collider& a = *static_cast<Collider*>(contacts[i].ownerA);
     Collider& b = *static_cast<Collider*>(contacts[i].ownerB);
 
-    // All points of a solid pair share one surface.
-    if (a.solid() && b.solid() && (a.hasBody() || b.hasBody())) {
-      const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
-      for (std::size_t k = i; k < end; ++k) {
-        contacts[k].solve = true;
-        contacts[k].surface = surface;
-      }
-    }
-
+    if (!decided) decide({&contacts[i], end - i});
     if (!a.listens() && !b.listens()) continue;
     for (std::size_t k = i; k < end; ++k) {
       for (CollisionHandler* h : a.handlers().active) h->onCollision({a, b, contacts[k], true});

@@ -20,9 +20,13 @@ engine::Surface combine(const engine::Surface& a, const engine::Surface& b);
 /// whose contacts would have no effect.
 bool pairCounts(void* ownerA, void* ownerB);
 
-/// Sets `solve` and `surface` of the contacts and calls the handlers before the solver. When a handler changes the
-/// tree, it logs an error, removes all contacts and returns.
-void runHandlers(engine::Contacts& contacts, Kernel& kernel);
+/// Sets `solve` and `surface` of the contacts of a pair. In any thread.
+void decide(std::span<engine::Contact> pair);
+/// Sorts contacts by the age of their geoms; those of a pair keep their order.
+void sortByPair(engine::Contacts& contacts, const engine::Model& model);
+/// Decides on the contacts, unless they are `decided`, and calls the handlers before the solver. When a handler changes
+/// the tree, it logs an error, removes all contacts and returns.
+void runHandlers(engine::Contacts& contacts, Kernel& kernel, bool decided = false);
 /// Sets `feedback` of every contact that is solved; appends the indices of those that did not have it to `added`.
 void measure(engine::Contacts& contacts, std::vector<std::size_t>& added);
 /// Calls the handlers after the solver, for contacts with `feedback`. `steps`: number of the engine's steps in one of

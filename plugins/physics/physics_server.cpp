@@ -48,7 +48,8 @@ void PhysicsServer::expectEngines() const {
                               name, className));
   };
   expect(static_cast<bool>(engine_), "engine", "engine", "OdeEngine");
-  expect(collision_ || engine_->capabilities().detects, "collision detection", "collision", "OdeCollision");
+  expect(collision_ || engine_->capabilities().detects || engine_->capabilities().late, "collision detection",
+         "collision", "OdeCollision");
 }
 
 World* PhysicsServer::findWorld() {
@@ -164,6 +165,24 @@ void PhysicsServer::physics(const Event& event) {
     if (scripts_[i] && scripts_[i]->hasEvents()) scripts_[i]->emit(event);
 }
 
+namespace {
+/// Takes the contacts of a late engine.
+struct Sink : engine::IContactSink {
+  Sink(engine::Contacts& out, int most) : contacts(out), perPairMost(most) {}
+  int perPair() const override { return perPairMost; }
+  bool decide(std::span<engine::Contact> points) override {
+    if (!physics::pairCounts(points.front().ownerA, points.front().ownerB)) return false;
+    physics::decide(points);
+    // Whether a handler wants forces is known only after the step.
+    for (engine::Contact& c : points) c.feedback = c.solve;
+    return true;
+  }
+  void report(std::span<const engine::Contact> found) override { contacts.assign(found.begin(), found.end()); }
+  engine::Contacts& contacts;
+  int perPairMost;
+};
+}  // namespace
+
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldModel> world = world_->model();
   engine::IEngine& engine = *engine_;
@@ -174,7 +193,13 @@ void PhysicsServer::solve(const Event& event) {
   const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.capabilities().usualStep;
   const int steps = usual > 0 ? static_cast<int>(std::clamp(std::round(event.step / usual), 1.0, 1000.0)) : 1;
   world->keepForces(steps > 1);
+  const bool late = engine.capabilities().late;
   for (int i = 0; i < steps; ++i) {
+    if (late) {
+      if (i > 0) world->repeatForces();
+      solveLate(*world, event.step / steps, steps);
+      continue;
+    }
     // Contacts and their handlers.
     contacts_.clear();
     contactsAt_ = kernel().structureVersion();
@@ -190,6 +215,18 @@ void PhysicsServer::solve(const Event& event) {
     physics::runSolved(contacts_, steps);
     for (const std::size_t k : measured_) contacts_[k].feedback = true;
   }
+}
+
+void PhysicsServer::solveLate(physics::WorldModel& world, double dt, int steps) {
+  Sink sink(contacts_, contactsPerPair_);
+  world.step(*engine_, contacts_, dt, &sink);
+  contactsAt_ = kernel().structureVersion();
+  physics::sortByPair(contacts_, world.model());
+  // All forces are there, but handlers see those that they ask for.
+  for (engine::Contact& c : contacts_) c.feedback = false;
+  physics::runHandlers(contacts_, kernel(), true);
+  physics::runSolved(contacts_, steps);
+  if (measureForces_) physics::measure(contacts_, measured_);
 }
 
 std::span<const engine::Contact> PhysicsServer::contacts() const {

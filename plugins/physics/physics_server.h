@@ -62,13 +62,17 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void physics(const Event& event);
   /// Detects contacts, calls handlers and steps the world.
   void solve(const Event& event);
+  /// One of several steps of an engine that finds contacts within it: handlers run after it.
+  void solveLate(physics::WorldModel& world, double dt, int steps);
   /// The place phase: writes the poses of bodies to their transforms.
   void place(const Event& event);
   /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.
   void shiftSurroundings();
   /// Logs the bodies that had to be reset.
   void reportFaults();
-  bool hasEngines() const { return engine_ && (collision_ || engine_->capabilities().detects); }
+  bool hasEngines() const {
+    return engine_ && (collision_ || engine_->capabilities().detects || engine_->capabilities().late);
+  }
   /// Logs once that the world cannot be stepped.
   void lacksEngines();
   bool defaultOnTransform() const { return defaultOnTransform_; }

@@ -408,8 +408,15 @@ typename Maker::Part& WorldModel::Compiled<Maker>::bring(Maker& maker, const eng
 
 engine::ISolver& WorldModel::solver(engine::IEngine& engine) {
   // One that detects contacts has geoms, too.
-  const std::uint64_t version = model_.dynamics + (engine.capabilities().detects ? model_.collision : 0);
+  const engine::Capabilities can = engine.capabilities();
+  const std::uint64_t version = model_.dynamics + (can.detects || can.late ? model_.collision : 0);
+  if (engine_.attached.startsAnew(engine)) ownAt_ = {};
   return engine_.bring(engine, model_, version, [&](engine::ISolver& s) { s.compile(model_, state_); });
+}
+
+void WorldModel::bringOwn(engine::IDetector& detector) {
+  const std::pair now{model_.structure, model_.collision};
+  if (std::exchange(ownAt_, now) != now || !edited_.empty()) detector.compile(model_, state_, edited_);
 }
 
 void WorldModel::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
@@ -417,8 +424,9 @@ void WorldModel::detect(engine::IEngine& engine, engine::ICollision* collision, 
   compact();
   const auto compile = [&](engine::IDetector& d) { d.compile(model_, state_, edited_); };
   engine::IDetector* const own = engine.capabilities().detects ? solver(engine).detector() : nullptr;
-  if (own || collision) {
+  if (own || (collision && !engine.capabilities().late)) {
     engine::IDetector& detector = own ? *own : collision_.bring(*collision, model_, model_.collision, compile);
+    if (own) bringOwn(*own);
     detector.detect(model_, state_, filter, perPair, out);
   }
   for (const Index g : edited_) geomEdited_[g] = 0;
@@ -475,7 +483,7 @@ void WorldModel::repeatForces() {
   }
 }
 
-void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, double dt) {
+void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink) {
   compact();
   engine::ISolver& solver = WorldModel::solver(engine);
   const engine::Capabilities can = engine.capabilities();
@@ -491,7 +499,8 @@ void WorldModel::step(engine::IEngine& engine, engine::Contacts& contacts, doubl
   if (!can.bodyDamping && bodiesDamped_) applyBodyDamping(dt);
   if (turningAt_ != model_.structure) listTurning();
   if (countedAt_ != poses_) countTurns();  // poses were set since the last step
-  engine::Step step{model_, state_, contacts, rounded(dt), {}};
+  engine::Step step{model_, state_, contacts, rounded(dt), {}, sink};
+  if (can.late) step.contacts = {};
   solver.step(step);
   ++poses_;
   checkBodies();

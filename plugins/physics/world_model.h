@@ -220,7 +220,8 @@ class WorldModel {
   /// Puts bodies that have been idle long enough to sleep, steps the world, and puts bodies whose state is no number or
   /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
   /// removed since.
-  void step(engine::IEngine& engine, engine::Contacts& contacts, double dt);
+  /// `sink`: for an engine with Capabilities::late; `contacts` are then those of the step before.
+  void step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink = nullptr);
   /// Keeps the forces and torques on the bodies, for a step of the simulation that has several of the engine's.
   void keepForces(bool on);
   /// Adds the kept ones again, before a further step of the engine.
@@ -255,6 +256,8 @@ class WorldModel {
     typename Maker::Part& bring(Maker& maker, const engine::Model& model, std::uint64_t version, F&& compile);
   };
   engine::ISolver& solver(engine::IEngine& engine);
+  /// Compiles an engine's own detector where the model changed.
+  void bringOwn(engine::IDetector& detector);
 
   engine::DynamicState& of(BodyHandle body) { return state_.bodies[bodies_[body]]; }
   const engine::DynamicState& of(BodyHandle body) const { return state_.bodies[bodies_[body]]; }
@@ -363,6 +366,7 @@ class WorldModel {
   std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, assemblies_ = 0;
   Compiled<engine::ICollision> collision_;
   Compiled<engine::IEngine> engine_;
+  std::pair<std::uint64_t, std::uint64_t> ownAt_;  ///< structure and collision that its own detector has
 };
 
 /// True when the magnitudes of `n` numbers (m, m/s, rad/s) sum up to less than 1e8; false also for NaN. Larger

@@ -224,7 +224,8 @@ TEST_CASE("A property that is set to a value out of range keeps its old value") 
       INFO("property " << p->name);
       const auto object = c.create();
       const Value before = p->get(*object);
-      CHECK_THROWS_AS(setProperty(*object, p->name, *p->min - 1), Error);
+      const double below = *p->min - std::max(1.0, 0.01 * std::abs(*p->min));
+      CHECK_THROWS_AS(setProperty(*object, p->name, below), Error);
       CHECK_THROWS_AS(setProperty(*object, p->name, std::nan("")), Error);
       CHECK(isClose(p->get(*object), before));
     }

@@ -15,8 +15,8 @@ TEST_CASE("two colliders have at most contactsPerPair contacts, and a box rests 
     w.block({0, 0, 0.499}, {1, 1, 1});
     w.block({0, 0, 1.497}, {1, 1, 1});
     for (const int most : {1, 2, 4, 16}) {
-      w.contacts.clear();
-      w.world.detect(*w.engine, w.collision, nullptr, most, w.contacts);
+      w.most = most;
+      w.touch();
       std::map<std::pair<engine::Index, engine::Index>, int> count;
       for (const engine::Contact& c : w.contacts) ++count[{c.geomA, c.geomB}];
       REQUIRE(count.size() == 2);
@@ -30,12 +30,8 @@ TEST_CASE("contacts beyond contactsPerPair have no effect") {
     if (!w.can.rotation) return;
     w.ground();
     const BodyHandle b = w.block({0, 0, 0.499}, {1, 1, 1});
-    for (int i = 0; i < 5; ++i) {
-      w.contacts.clear();
-      w.world.detect(*w.engine, w.collision, nullptr, 1, w.contacts);
-      for (engine::Contact& c : w.contacts) c.solve = true;
-      w.world.step(*w.engine, w.contacts, w.dt);
-    }
+    w.most = 1;
+    w.run(5 * w.dt);
     CHECK(w.spin(b).norm() > 0.01);  // it stands on one corner, and tips over
   });
 }
@@ -129,7 +125,7 @@ TEST_CASE("a contact knows its geoms, bodies and owners, and its normal points i
     const GeomHandle floor = w.geom({.shape = Shape::plane}, BodyHandle::none, {}, &groundOwner);
     const BodyHandle b = w.body({0, 0, 0.09});
     const GeomHandle round = w.geom({.shape = Shape::sphere, .radius = 0.1}, b, {}, &ballOwner);
-    w.detect();
+    w.touch();
     REQUIRE(w.contacts.size() == 1);
     const engine::Contact& c = w.contacts[0];
     const bool first = c.geomA == w.world.index(round);

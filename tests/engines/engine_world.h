@@ -23,21 +23,19 @@ struct EngineKind {
   const char* name;  ///< its class
   const char* plugin;
   bool built() const {
-    return std::string(plugin) == "point-masses" ||
+    return std::string(plugin) == "point-masses" || std::string(plugin) == "late-contacts" ||
            std::filesystem::exists(pluginFolder() / (std::string(plugin) + ".so"));
   }
 };
 
-/// All engines. The last one is an example of a minimal engine.
+/// All engines. The last two are examples: a minimal engine, and one whose contacts appear within its step.
 inline const EngineKind kEngines[] = {
-    {"OdeEngine", "physics-ode"},
-    {"ArticulatedEngine", "physics-articulated"},
-    {"MujocoEngine", "physics-mujoco"},
-    {"BulletEngine", "physics-bullet"},
-    {"PointMassEngine", "point-masses"},
+    {"OdeEngine", "physics-ode"},        {"ArticulatedEngine", "physics-articulated"},
+    {"MujocoEngine", "physics-mujoco"},  {"BulletEngine", "physics-bullet"},
+    {"PointMassEngine", "point-masses"}, {"LateEngine", "late-contacts"},
 };
 
-struct EngineWorld : TestHost {
+struct EngineWorld : TestHost, engine::IContactSink {
   const EngineKind& kind;
   engine::ICollision* collision = nullptr;  ///< nullptr: the engine detects contacts
   engine::IEngine* engine;
@@ -47,6 +45,8 @@ struct EngineWorld : TestHost {
   engine::Contacts contacts;
   engine::Surface surface;  ///< of all contacts
   double dt = 0.01;         ///< s
+  int most = 4;             ///< contacts of two geoms
+  bool solve = true;        ///< contacts with a body are solved
 
   explicit EngineWorld(const EngineKind& k) : kind(k), space(world.createSpace(physics::SpaceHandle::none)) {
     kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
@@ -58,7 +58,7 @@ struct EngineWorld : TestHost {
   }
   /// ODE's collision detection, unless the engine has its own.
   void makeCollision() {
-    if (!can.detects) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
+    if (!can.detects && !can.late) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
   }
   void makeEngine() {
     engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
@@ -129,20 +129,41 @@ struct EngineWorld : TestHost {
     world.setParameter(j, JointParameter::stopErp, axis, 0.5);
   }
 
-  void detect() {
-    contacts.clear();
-    world.detect(*engine, collision, nullptr, 4, contacts);
-    for (engine::Contact& c : contacts) {
-      c.solve = c.bodyA != engine::kNone || c.bodyB != engine::kNone;
+  int perPair() const override { return most; }
+  bool decide(std::span<engine::Contact> points) override {
+    for (engine::Contact& c : points) {
+      c.solve = solve && (c.bodyA != engine::kNone || c.bodyB != engine::kNone);
       c.feedback = true;
       c.surface = surface;
     }
+    return true;
+  }
+  void report(std::span<const engine::Contact> found) override {
+    contacts.assign(found.begin(), found.end());
+    std::stable_sort(contacts.begin(), contacts.end(), [&](const engine::Contact& a, const engine::Contact& b) {
+      return std::pair(a.geomA, a.geomB) < std::pair(b.geomA, b.geomB);
+    });
+  }
+  /// Finds the contacts of the present poses, before a step; a late engine finds them in it.
+  void detect() {
+    if (can.late) return;
+    contacts.clear();
+    world.detect(*engine, collision, nullptr, most, contacts);
+    decide(contacts);
+  }
+  /// The step after detect().
+  void step() { world.step(*engine, contacts, dt, this); }
+  /// Finds the contacts: before a step, or in one of nearly no time.
+  void touch() {
+    detect();
+    if (!can.late) return;
+    world.step(*engine, contacts, 1e-9, this);
   }
   /// Steps the world. All contacts are solved.
   void run(double seconds) {
     for (int i = 0, n = static_cast<int>(std::lround(seconds / dt)); i < n; ++i) {
       detect();
-      world.step(*engine, contacts, dt);
+      step();
     }
   }
   Vec3 position(BodyHandle b) const { return world.state(b).position; }

@@ -80,10 +80,11 @@ TEST_CASE("contacts can be removed between detection and step") {
       [](EngineWorld& w) {
         w.ground();
         const BodyHandle resting = w.block({0, 0, 0.499}, {1, 1, 1});
+        if (w.can.late) return;
         w.detect();
         REQUIRE(w.contacts.size() == 4);
         w.contacts.clear();
-        w.world.step(*w.engine, w.contacts, w.dt);
+        w.step();
         CHECK(w.velocity(resting).z() < 0);
       },
       {&engine::Capabilities::surfaces});
@@ -113,7 +114,7 @@ TEST_CASE("a world may be destroyed before its engine, and an engine before the 
       const BodyHandle b = second.createBody();
       engine::Contacts none;
       second.detect(*w.engine, w.collision, nullptr, 4, none);
-      second.step(*w.engine, none, 0.01);
+      second.step(*w.engine, none, 0.01, &w);
       CHECK(second.state(b).position.z() < 0);
     }
     w.run(0.1);
@@ -157,13 +158,13 @@ TEST_CASE("contacts that are not to be solved exert no force, even if the world 
     w.setGravity(0);
     w.geom({.shape = Shape::box, .lengths = {1, 1, 1}});
     const BodyHandle ghost = w.sphere({0.1, 0, 0}, 0.3), other = w.body({5, 0, 0});
+    w.solve = false;
     for (int i = 0; i < 20; ++i) {
       w.detect();
-      REQUIRE_FALSE(w.contacts.empty());
-      for (engine::Contact& c : w.contacts) c.solve = false;
       if (i == 5) w.world.setMass(other, {2, Vec3::Zero(), Mat3::Identity()});
       if (i == 10) w.world.setPosition(other, {6, 0, 0});
-      w.world.step(*w.engine, w.contacts, i < 15 ? w.dt : w.dt / 2);
+      w.world.step(*w.engine, w.contacts, i < 15 ? w.dt : w.dt / 2, &w);
+      REQUIRE_FALSE(w.contacts.empty());
     }
     CHECK(w.velocity(ghost).norm() < 1e-6);
   });
