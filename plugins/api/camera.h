@@ -53,7 +53,8 @@ class ICameraRenderer {
   SPARK_INTERFACE(ICameraRenderer, 1);
   static constexpr const char* kPath = "/sys/server/camera";
   virtual ~ICameraRenderer() = default;
-  /// Draws the scene as of the last place phase. False if there is no picture, which is logged once. Simulation thread.
+  /// Draws the scene as of the last place phase. False if there are no pictures at all, which is logged once.
+  /// Throws Error if this one fails, such as one too large for OpenGL; others may succeed. Simulation thread.
   virtual bool render(const CameraShot& shot, Picture& out) = 0;
   /// Appends the picture in that format as base64 (RFC 4648, with padding). Any thread, several at once.
   virtual void appendText(const Picture& picture, PictureFormat format, std::string& out) const = 0;

@@ -36,19 +36,14 @@ void CameraServer::findSeen(Picture& picture) {
   std::sort(picture.seen.begin(), picture.seen.end());
 }
 
-bool CameraServer::render(const CameraShot& shot, Picture& out) {
+/// Starts OpenGL with the first picture. False if there is none, which is logged once.
+bool CameraServer::start() {
+  if (renderer_) return true;
   if (broken_) return false;
   try {
-    if (!renderer_) {
-      renderer_ = std::make_unique<camera::Renderer>(egl_);
-      scene_ = std::make_unique<camera::PieceList>(*this);
-      kernel().log().info("{}: {} draws pictures.", path(), renderer_->name());
-    }
-    drawing_.background = background_;
-    scene_->update();
-    camera::View(shot).compose(*scene_, drawing_);
-    renderer_->draw(shot, drawing_, out);
-    findSeen(out);
+    renderer_ = std::make_unique<camera::Renderer>(egl_);
+    scene_ = std::make_unique<camera::PieceList>(*this);
+    kernel().log().info("{}: {} draws pictures.", path(), renderer_->name());
     return true;
   } catch (const std::exception& e) {
     broken_ = true;
@@ -58,6 +53,16 @@ bool CameraServer::render(const CameraShot& shot, Picture& out) {
         path(), e.what());
     return false;
   }
+}
+
+bool CameraServer::render(const CameraShot& shot, Picture& out) {
+  if (!start()) return false;
+  drawing_.background = background_;
+  scene_->update();
+  camera::View(shot).compose(*scene_, drawing_);
+  renderer_->draw(shot, drawing_, out);
+  findSeen(out);
+  return true;
 }
 
 void CameraServer::appendText(const Picture& picture, PictureFormat format, std::string& out) const {

@@ -23,6 +23,7 @@ class CameraServer : public Node, public ICameraRenderer {
   const std::string& pathOf(std::uint16_t number) const override;
 
  private:
+  bool start();
   /// What renders, for people; "" before the first picture.
   std::string renderer() const { return renderer_ ? renderer_->name() : ""; }
   /// Paths of the visual nodes, by number from 1.
@@ -32,7 +33,7 @@ class CameraServer : public Node, public ICameraRenderer {
 
   std::string egl_ = "libEGL.so.1";
   Color background_{0.55f, 0.75f, 0.95f, 1};
-  bool broken_ = false;  ///< there are no pictures, which was logged
+  bool broken_ = false;  ///< there is no OpenGL, which was logged
   std::unique_ptr<camera::Renderer> renderer_;
   std::unique_ptr<camera::PieceList> scene_;
   camera::Drawing drawing_;

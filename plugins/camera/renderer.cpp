@@ -76,8 +76,18 @@ void Renderer::makeTargets(int width, int height) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, frame);
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffer);
     gl_.FramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depths_);
-    if (const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER); status != GL_FRAMEBUFFER_COMPLETE)
-      throw Error(fmt::format("OpenGL has no frame of {} x {} px (status {:#x})", width_, height_, status));
+    if (const GLenum status = gl_.CheckFramebufferStatus(GL_FRAMEBUFFER); status != GL_FRAMEBUFFER_COMPLETE) {
+      forgetTargets();
+      throw Error(fmt::format("OpenGL has no frame of {} x {} px (status {:#x})", width, height, status));
+    }
+  }
+}
+
+/// After a failure: the next picture makes its buffers anew and is not blamed for old errors.
+void Renderer::forgetTargets() {
+  width_ = height_ = 0;
+  constexpr int kMostErrors = 16;  // a context that is lost may never run out of them
+  for (int i = 0; i < kMostErrors && gl_.GetError() != GL_NO_ERROR; ++i) {
   }
 }
 
@@ -242,8 +252,10 @@ void Renderer::draw(const CameraShot& shot, const Drawing& drawing, Picture& out
                  drawing.instances.data(), GL_STREAM_DRAW);
   drawBatches(shot, drawing);
   read(shot, out);
-  if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR)
+  if (const GLenum error = gl_.GetError(); error != GL_NO_ERROR) {
+    forgetTargets();
     throw Error(fmt::format("OpenGL reports error {:#x}", error));
+  }
 }
 
 }  // namespace spark::camera

@@ -90,6 +90,7 @@ class Renderer {
   };
   void makeCube();
   void makeTargets(int width, int height);
+  void forgetTargets();
   const Program& program(Shape shape, PictureKind kind);
   GLuint compile(GLenum stage, const std::string& head, const char* text);
   const Vertices& vertices(const MeshPart& mesh);

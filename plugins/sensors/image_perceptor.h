@@ -48,8 +48,16 @@ class ImagePerceptor : public Perceptor, public ISharedView {
 
   void share(std::uint64_t) override {
     ICameraRenderer* const renderer = renderer_.get();
-    fresh_ = renderer && transform() &&
-             renderer->render({transform()->world(), kind_, width_, height_, fovDeg_, zNear_, zFar_}, taken_);
+    fresh_ = false;
+    if (!renderer || !transform()) return;
+    try {
+      fresh_ = renderer->render({transform()->world(), kind_, width_, height_, fovDeg_, zNear_, zFar_}, taken_);
+    } catch (const std::exception& e) {
+      kernel().countFault();
+      if (!std::exchange(failed_, true))
+        kernel().log().error("{}: no picture of {} x {} px, because {}. This is logged once.", path(), width_, height_,
+                             e.what());
+    }
   }
   void sense(Predicates& out, const Event&) override {
     const ICameraRenderer* const renderer = renderer_.get();
@@ -95,10 +103,11 @@ class ImagePerceptor : public Perceptor, public ISharedView {
   int width_ = 320, height_ = 240;
   double fovDeg_ = 60, zNear_ = 0.1, zFar_ = 50;
   bool offScreen_ = true;
-  Picture taken_;       ///< the last picture
-  bool fresh_ = false;  ///< `taken_` is of this sense phase
-  std::string text_;    ///< its text, kept for its memory
-  std::string safe_;    ///< the result of safe()
+  Picture taken_;        ///< the last picture
+  bool fresh_ = false;   ///< `taken_` is of this sense phase
+  bool failed_ = false;  ///< a picture failed, which was logged
+  std::string text_;     ///< its text, kept for its memory
+  std::string safe_;     ///< the result of safe()
 };
 
 }  // namespace spark

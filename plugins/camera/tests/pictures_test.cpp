@@ -241,3 +241,17 @@ TEST_CASE("painted lines are seen on the ground, white and as wide as they are")
   for (const auto& [x, y] : inside) CHECK(studio.number(x, y) == studio.numberOf(line));
   for (const auto& [x, y] : outside) CHECK(studio.number(x, y) == studio.numberOf(ground));
 }
+
+TEST_CASE("a picture that OpenGL cannot hold fails alone: the next one is drawn") {
+  Studio studio;
+  studio.solid(studio.place("crate", {0, 3, 1}), "Box", "setExtents", {1, 1, 1}, "none");
+  studio.take(PictureKind::segmentation);
+  const CameraShot usual = studio.shot;
+  studio.shot.width = 1 << 20;
+  CHECK_THROWS_WITH(studio.camera->as<ICameraRenderer>()->render(studio.shot, studio.picture),
+                    Catch::Contains("OpenGL"));
+  studio.shot = usual;
+  studio.take(PictureKind::segmentation);
+  CHECK(studio.number(usual.width / 2, usual.height / 2) == 1);
+  CHECK(studio.text.find("no pictures") == studio.text.npos);
+}
