@@ -161,6 +161,18 @@ TEST_CASE("A list of links holds all targets in tree order") {
   CHECK(l.all.size() == 1);
 }
 
+TEST_CASE("The ends of a list of links belong together, whichever is taken first after a change") {
+  Forest t;
+  Linked& l = t.linked(t.make("outer"));
+  Thing &one = t.make(l, "one"), &two = t.make(l, "two"), &three = t.make(l, "three");
+  CHECK(l.all.size() == 3);
+  l.remove(one);
+  l.remove(three);
+  const auto end = l.all.end(), begin = l.all.begin();  // end() first, as compilers may evaluate arguments
+  REQUIRE(end - begin == 1);
+  CHECK(begin->object == &two);
+}
+
 TEST_CASE("Links work before their owner is in the tree, and find more targets once it is") {
   Forest t;
   auto made = t.kernel.classOf("Linked").create();

@@ -270,8 +270,8 @@ class Links : public detail::LinkBase {
   }
   /// The first object.
   auto begin() const { return all().begin(); }
-  /// Behind the last object. Call begin() first.
-  auto end() const { return std::as_const(all_).end(); }
+  /// Behind the last object. Whichever of begin() and end() is called first looks up the objects.
+  auto end() const { return all().end(); }
   /// The number of objects.
   std::size_t size() const { return all().size(); }
   /// True if there are no objects.
