@@ -114,7 +114,7 @@ class NumberModifier : public Modifier {
 
  protected:
   /// The largest number that properties of these classes may have, for ranges: neither infinite nor NaN.
-  static constexpr double kMost = 1e300;
+  static constexpr double kMost = 1e15;
   /// The number that replaces `value`. `index`: which number of its list it is, from 0, as in the property `indices`.
   virtual double change(double value, std::size_t index, const Event& event) = 0;
 

@@ -128,14 +128,14 @@ TEST_CASE("Properties that are not finite are refused") {
 
 TEST_CASE("A number stays as it is if its result is not finite, which is logged once for each modifier") {
   Bench bench;
-  SECTION("gain") { bench.add("Gain", {{"gain", 1e300}}); }
+  SECTION("gain") { bench.add("Gain", {{"gain", 1e15}}); }
   SECTION("quantization") { bench.add("Quantization", {{"step", 1e-320}}); }
   SECTION("a chain") {
-    bench.add("Bias", {{"mean", 1e300}});
-    bench.add("Gain", {{"gain", -1e300}});
+    bench.add("Bias", {{"mean", 1e15}});
+    bench.add("Gain", {{"gain", -1e15}});
   }
   for (int i = 0; i < 3; ++i)
-    for (const double v : bench.senseAll({1e200, -1e200})) CHECK(std::isfinite(v));
+    for (const double v : bench.senseAll({1e300, -1e300})) CHECK(std::isfinite(v));
   const std::string mark = "which cannot be sent: such numbers stay as they are.";
   const auto first = bench.text.find(mark);
   REQUIRE(first != std::string::npos);
@@ -145,12 +145,12 @@ TEST_CASE("A number stays as it is if its result is not finite, which is logged 
 
 TEST_CASE("An integer of a percept stays as it is if its result does not fit into one") {
   Bench bench;
-  Leaf& gain = bench.add("Gain", {{"field", "id"}, {"gain", 1e18}});
-  CHECK(after(bench, mixed()) == "(S (n 5) (id 7000000000000000000) (v 1.00 2.00 3.00) (w (x 4.00)))");
+  bench.add("Gain", {{"field", "id"}, {"gain", 1e15}});
+  CHECK(after(bench, mixed()) == "(S (n 5) (id 7000000000000000) (v 1.00 2.00 3.00) (w (x 4.00)))");
   CHECK(bench.text.empty());
-  setProperty(gain, "gain", 1e19);
-  CHECK(after(bench, mixed()) == "(S (n 5) (id 7) (v 1.00 2.00 3.00) (w (x 4.00)))");
-  CHECK_THAT(bench.text, Catch::Contains("/usr/sensor/Gain (Gain) would make 7e+19 of 7"));
+  bench.add("Gain", {{"field", "id"}, {"gain", 1e4}});
+  CHECK(after(bench, mixed()) == "(S (n 5) (id 7000000000000000) (v 1.00 2.00 3.00) (w (x 4.00)))");
+  CHECK_THAT(bench.text, Catch::Contains(" (Gain) would make 7e+19 of 7000000000000000"));
 }
 
 TEST_CASE("White noise has its standard deviation and no memory") {

@@ -48,6 +48,25 @@ class Polled : public Node, public IInputSource {
   int polls = 0, waits = 0;
 };
 
+/// A source that counts calls when none of its class is left.
+class Removed : public Node, public IInputSource {
+  SPARK_CLASS(Removed, Node)
+ public:
+  Removed() { ++living; }
+  ~Removed() override { --living; }
+  static void describe(Description<Removed>& d) { d.implements<IInputSource>(); }
+  void poll() override {}
+  bool wait(double) override { return count(); }
+  bool canWait() const override { return count(); }
+  static inline int living = 0, late = 0;
+
+ private:
+  static bool count() {
+    if (living == 0) ++late;
+    return living > 0;
+  }
+};
+
 /// A gate that opens a second after its first check.
 class ClosedForASecond : public Node, public IInputGate {
   SPARK_CLASS(ClosedForASecond, Node)
@@ -177,7 +196,8 @@ TEST_CASE("A cycle waits until all gates are open, then polls its input once mor
 
 TEST_CASE("A cycle may remove the source that the loop would wait in") {
   LoopFixture f;
-  for (const char* name : {"first", "other"}) f.host.kernel.create("Batches", fmt::format("/sys/server/{}", name));
+  f.host.kernel.registerClass<Removed>();
+  for (const char* name : {"first", "other"}) f.host.kernel.create("Removed", fmt::format("/sys/server/{}", name));
   f.host.kernel.create<Polled>("Polled", "/sys/server/polled");
   // Two of three go, and the loop waits next: the list of sources is shorter then.
   f.host.kernel.events().channel("rule").add(f.host.kernel.root(), [&](Leaf& root, const Event& e) {
@@ -188,6 +208,8 @@ TEST_CASE("A cycle may remove the source that the loop would wait in") {
   });
   f.runCycles(3);
   REQUIRE(f.loop->cycle() == 3);
+  REQUIRE(Removed::living == 0);
+  REQUIRE(Removed::late == 0);
 }
 
 TEST_CASE("A stop request ends the wait for a gate that never opens") {
