@@ -155,15 +155,15 @@ struct JointAxis {
   /// A passive spring: the force stiffness (springPosition - coordinate), beside motor and controller [Nm/rad or N/m].
   double stiffness = 0;
   double springPosition = 0;  ///< rad or m; counted as angles of joints are
-  /// Read by ODE's solver and the articulated one; names as in the section "Stop and motor parameters" of the ODE
-  /// manual.
-  struct Ode {
+  /// How soft motor and stops are, as scene files of the installed base say it; names as in the section "Stop and motor
+  /// parameters" of the ODE manual. Solvers that are not soft do not read them.
+  struct Softness {
     double fudgeFactor = 1;  ///< 0..1: scales a motor that drives away from the stop it is at
     double bounce = 0;       ///< restitution of the stops, 0..1
     double cfm = 0;          ///< of the motor's row [velocity / force]
     double stopErp = 0;      ///< of the stops' row, 0..1
     double stopCfm = 0;      ///< of the stops' row [velocity / force]
-  } ode;
+  } soft;
 };
 
 /// Where a body was when a joint was set.
@@ -222,11 +222,11 @@ struct alignas(64) Joint {
   /// Euler motor: the zero directions of its angles. reference1 is b's axis when set, in a; reference2 is a's axis when
   /// set, in b.
   Vec3 reference1 = Vec3::Zero(), reference2 = Vec3::Zero();
-  /// Read by ODE's solver and the articulated one.
-  struct Ode {
+  /// How soft the joint is, likewise.
+  struct Softness {
     double erp = 0.2, cfm = 1e-5;                 ///< ball and fixed: of the anchor's rows; other rows use the world's
     double suspensionErp = 0, suspensionCfm = 0;  ///< hinge2: of the row along axis 1
-  } ode;
+  } soft;
   std::vector<Assembly> assembly;  ///< the calls that set it, the last of each kind and axis
   std::uint64_t id = 0;            ///< identity in its world
   std::uint64_t attachedAt = 0;    ///< rises with each attachment in the world

@@ -117,7 +117,7 @@ struct JointWriter {
     double force = motor.maxForce;
     if (motor.velocity > 0 || (motor.velocity == 0 && stop == Stop::high)) force = -force;
     if ((stop == Stop::low && motor.velocity > 0) || (stop == Stop::high && motor.velocity < 0))
-      force *= axis.ode.fudgeFactor;
+      force *= axis.soft.fudgeFactor;
     return force;
   }
   /// Adds -force along the row to the forces on the bodies.
@@ -162,7 +162,7 @@ struct JointWriter {
     // At a stop the motor acts as a given force: the row belongs to the stop. Dry friction does not press.
     const bool friction = motor.velocity == 0 && motor.maxForce == axis.dryFriction;
     if (powered && stopped && !friction) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, motor, stop));
-    Row& row = add(jacobianA, jacobianB, motor.velocity, axis.ode.cfm);
+    Row& row = add(jacobianA, jacobianB, motor.velocity, axis.soft.cfm);
     row.axis = static_cast<std::uint8_t>(index);
     row.stop = stop;
     if (inertia > 0) {
@@ -175,13 +175,13 @@ struct JointWriter {
       return;
     }
     // A stop pushes only away from itself; equal stops push both ways and do not bounce.
-    row.softness = softness(axis.ode.stopCfm);
-    double target = -constants.inverseDt * axis.ode.stopErp * contact.excess;
+    row.softness = softness(axis.soft.stopCfm);
+    double target = -constants.inverseDt * axis.soft.stopErp * contact.excess;
     if (!locked) {
       (stop == Stop::low ? row.low : row.high) = 0;
-      const double rebound = -axis.ode.bounce * velocity;
-      if (axis.ode.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
-      if (axis.ode.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
+      const double rebound = -axis.soft.bounce * velocity;
+      if (axis.soft.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
+      if (axis.soft.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
     }
     row.target = target * constants.inverseDt;
   }
@@ -194,7 +194,7 @@ struct JointWriter {
   // ---- joint types ----
 
   void writeBall() {
-    addBall(joint.ode.erp, joint.ode.cfm);
+    addBall(joint.soft.erp, joint.soft.cfm);
     const double damping = joint.axes[0].damping;
     for (int i = 0; damping > 0 && i < 3; ++i) {
       const Vec3 axis = Vec3::Unit(i);
@@ -278,8 +278,8 @@ struct JointWriter {
     const Vec3 error = anchorError(armA, armB);
     Vec3 p, q;
     perpendicularBasis(axis1, p, q);
-    addPoint(axis1, armA, armB, constants.inverseDt * joint.ode.suspensionErp * axis1.dot(error),
-             joint.ode.suspensionCfm);
+    addPoint(axis1, armA, armB, constants.inverseDt * joint.soft.suspensionErp * axis1.dot(error),
+             joint.soft.suspensionCfm);
     addPoint(p, armA, armB, errorGain() * p.dot(error), constants.cfm);
     addPoint(q, armA, armB, errorGain() * q.dot(error), constants.cfm);
     // The angle between the axes stays as set; the error is the sine of the difference of the two angles.
@@ -297,7 +297,7 @@ struct JointWriter {
   }
 
   void writeFixed() {
-    addBall(joint.ode.erp, joint.ode.cfm);
+    addBall(joint.soft.erp, joint.soft.cfm);
     addSameRotation();
   }
 

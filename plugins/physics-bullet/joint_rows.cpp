@@ -83,7 +83,7 @@ struct JointWriter {
     Vec3 p, q;
     perpendicularBasis(axis1, p, q);
     out.addRow(
-        point(axis1, atA, atB, gain(joint.ode.suspensionErp) * axis1.dot(error), softness(joint.ode.suspensionCfm)));
+        point(axis1, atA, atB, gain(joint.soft.suspensionErp) * axis1.dot(error), softness(joint.soft.suspensionCfm)));
     for (const Vec3& d : {p, q}) out.addRow(point(d, atA, atB, gain() * d.dot(error), softness()));
     const Vec3 normal = axis1.cross(axis2);
     const double sine = normal.norm(), cosine = axis1.dot(axis2);
@@ -127,14 +127,14 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
   if (motor.maxForce > 0 && !locked) {
     Row drive = row;
     drive.target = motor.velocity;
-    drive.softness = axis.ode.cfm / dt;
+    drive.softness = axis.soft.cfm / dt;
     drive.low = -motor.maxForce * dt, drive.high = motor.maxForce * dt;
     out.addRow(drive);
   }
   if (!stops) return;
-  row.softness = axis.ode.stopCfm / dt;
+  row.softness = axis.soft.stopCfm / dt;
   if (locked) {
-    row.target = axis.ode.stopErp * (axis.lowStop - position) / dt;
+    row.target = axis.soft.stopErp * (axis.lowStop - position) / dt;
     out.addRow(row);
     return;
   }
@@ -143,10 +143,10 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
     const double excess = sign * (at - position);  // above 0: beyond the stop
     if (excess < -kReach - 2 * std::abs(rate) * dt) return;
     Row r = row;
-    r.target = sign * (excess > 0 ? axis.ode.stopErp : 1.0) * excess / dt;
+    r.target = sign * (excess > 0 ? axis.soft.stopErp : 1.0) * excess / dt;
     const double approach = -sign * rate;
-    if (axis.ode.bounce > 0 && approach > 0 && excess + approach * dt > 0)
-      r.target = sign * std::max(sign * r.target, axis.ode.bounce * approach);
+    if (axis.soft.bounce > 0 && approach > 0 && excess + approach * dt > 0)
+      r.target = sign * std::max(sign * r.target, axis.soft.bounce * approach);
     (sign > 0 ? r.low : r.high) = 0;
     out.addRow(r);
   };
@@ -161,8 +161,8 @@ void JointRows::writeDof(TreeBody& tree, const Dof& dof) const {
   row.offset = tree.offsetOf(dof);
   if (dof.axis < 0) {
     // The suspension of a wheel is a row of ERP and CFM.
-    row.target = -j.ode.suspensionErp / step.dt * dof.position;
-    row.softness = j.ode.suspensionCfm / step.dt;
+    row.target = -j.soft.suspensionErp / step.dt * dof.position;
+    row.softness = j.soft.suspensionCfm / step.dt;
     out.addRow(row);
     return;
   }
@@ -190,7 +190,7 @@ void JointRows::writeJoint(Index index, const Side& sideA, const Side& sideB) co
   const auto coordinate = [&](std::size_t axis) { return step.state.coordinates[index].at(axis); };
   switch (j.type) {
     case JointType::ball:
-      w.ball(j.ode.erp, j.ode.cfm);
+      w.ball(j.soft.erp, j.soft.cfm);
       writeBallDamping(index, sideA, sideB);
       break;
     case JointType::hinge:
@@ -216,7 +216,7 @@ void JointRows::writeJoint(Index index, const Side& sideA, const Side& sideB) co
       turning(1, w.fromB(j.axisB[1]), 0);
       break;
     case JointType::fixed:
-      w.ball(j.ode.erp, j.ode.cfm);
+      w.ball(j.soft.erp, j.soft.cfm);
       w.sameRotation();
       break;
     case JointType::angularMotor: {

@@ -309,7 +309,7 @@ struct Writer {
       case JointType::hinge2: {
         // A spring along axis 1, as ODE's ERP and CFM mean one (ODE manual, "Soft constraint and CFM").
         const auto suspension = [&] {
-          const double dt = step, erp = j.ode.suspensionErp, cfm = std::max(j.ode.suspensionCfm, 1e-7);
+          const double dt = step, erp = j.soft.suspensionErp, cfm = std::max(j.soft.suspensionCfm, 1e-7);
           axial(0, "slide", inChild(j.axisA[0], true), nullptr);
           put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
         };

@@ -79,18 +79,18 @@ void passParameters(JointData& j, const engine::Joint& from, const engine::Joint
     JointAxis& known = j.axes[axis];
     const int group = dParamGroup * axis;
     passStops(j, from, axis, coordinates.turns[axis]);
-    pass(j, dParamFudgeFactor + group, a.ode.fudgeFactor, known.ode.fudgeFactor);
-    pass(j, dParamBounce + group, a.ode.bounce, known.ode.bounce);
-    pass(j, dParamCFM + group, a.ode.cfm, known.ode.cfm);
-    pass(j, dParamStopERP + group, a.ode.stopErp, known.ode.stopErp);
-    pass(j, dParamStopCFM + group, a.ode.stopCfm, known.ode.stopCfm);
+    pass(j, dParamFudgeFactor + group, a.soft.fudgeFactor, known.soft.fudgeFactor);
+    pass(j, dParamBounce + group, a.soft.bounce, known.soft.bounce);
+    pass(j, dParamCFM + group, a.soft.cfm, known.soft.cfm);
+    pass(j, dParamStopERP + group, a.soft.stopErp, known.soft.stopErp);
+    pass(j, dParamStopCFM + group, a.soft.stopCfm, known.soft.stopCfm);
   }
   if (j.type == JointType::ball || j.type == JointType::fixed) {
-    pass(j, dParamERP, from.ode.erp, j.ode.erp);
-    pass(j, dParamCFM, from.ode.cfm, j.ode.cfm);
+    pass(j, dParamERP, from.soft.erp, j.soft.erp);
+    pass(j, dParamCFM, from.soft.cfm, j.soft.cfm);
   } else if (j.type == JointType::hinge2) {
-    pass(j, dParamSuspensionERP, from.ode.suspensionErp, j.ode.suspensionErp);
-    pass(j, dParamSuspensionCFM, from.ode.suspensionCfm, j.ode.suspensionCfm);
+    pass(j, dParamSuspensionERP, from.soft.suspensionErp, j.soft.suspensionErp);
+    pass(j, dParamSuspensionCFM, from.soft.suspensionCfm, j.soft.suspensionCfm);
   }
   if (j.wantsFeedback != from.wantsFeedback) {
     j.wantsFeedback = from.wantsFeedback;
@@ -190,9 +190,9 @@ void compileJoints(WorldData& w, const Model& model, const engine::State& state)
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
     for (JointAxis& a : j->axes) {
       a.lowStop = a.highStop = kUnknown;
-      a.ode = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+      a.soft = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
     }
-    j->ode = {kUnknown, kUnknown, kUnknown, kUnknown};
+    j->soft = {kUnknown, kUnknown, kUnknown, kUnknown};
     w.joints.push_back(std::move(j));
     w.motors.emplace_back();
   }

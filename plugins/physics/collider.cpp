@@ -42,10 +42,10 @@ void Collider::describe(Description<Collider>& d) {
       .doc("Names of the colliders of its space that it collides with whatever contactTypes say.");
   d.property("contactTypes", &Collider::contactTypes_)
       .doc(
-          "Bits of the kinds of colliders that it is; MuJoCo's contype. Two collide if a bit of one is in the other's "
+          "Bits of the kinds of colliders that it is. Two collide if a bit of one is in the other's "
           "contactAffinities.");
   d.property("contactAffinities", &Collider::contactAffinities_)
-      .doc("Bits of the kinds of colliders that it collides with; MuJoCo's conaffinity.");
+      .doc("Bits of the kinds of colliders that it collides with.");
   d.property("notCollideWith", &Collider::notCollideWith)
       .doc("Names of the colliders of its space that it does not collide with.");
   d.property("part", &Collider::part, &Collider::setPart)

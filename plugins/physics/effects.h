@@ -11,7 +11,7 @@
 namespace spark::physics {
 
 /// Logs once for each kind, with the path of the first node that has it: "/usr/scene/...: bounce has no effect with
-/// MujocoEngine".
+/// <its class>".
 class Effects {
  public:
   /// The joints and handlers of the world, in tree order; valid until the tree changes.

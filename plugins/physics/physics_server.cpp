@@ -31,9 +31,10 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
           "solver's results may differ from a run without.");
   d.property("exactReplay", &S::exactReplay_)
       .doc(
-          "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with OdeCollision "
-          "and OdeEngine: numbers that enter them are rounded to single precision, and contacts are solved in the "
-          "order in which ODE's hash spaces report them.");
+          "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with the engine "
+          "and "
+          "the collision detection of that base: numbers that enter them are rounded to single precision, and contacts "
+          "are solved in the order in which its spaces report them.");
   d.property("contactsPerPair", &S::contactsPerPair_)
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
@@ -42,14 +43,19 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
 }
 
 void PhysicsServer::expectEngines() const {
-  const auto expect = [&](bool found, const char* what, const char* name, const char* className) {
-    if (!found)
-      throw Error(fmt::format("{0} has no {1} below it: add one, for instance new(\"{3}\", \"{0}/{2}\")", path(), what,
-                              name, className));
+  const auto expect = [&](bool found, const char* what, const char* name, const char* interface) {
+    if (found) return;
+    // The first class that would do, as an example.
+    for (ClassObject* c : kernel().classes())
+      if (!c->isAbstract() && c->isOrOffers(interface))
+        throw Error(fmt::format("{0} has no {1} below it: add one, for instance new(\"{3}\", \"{0}/{2}\")", path(),
+                                what, name, c->name()));
+    throw Error(fmt::format("{0} has no {1} below it: load a plugin with one ({2}), and add it as {0}/{3}", path(),
+                            what, interface, name));
   };
-  expect(static_cast<bool>(engine_), "engine", "engine", "OdeEngine");
-  expect(collision_ || engine_->capabilities().detects || engine_->capabilities().late, "collision detection",
-         "collision", "OdeCollision");
+  expect(static_cast<bool>(engine_), "engine", "engine", "IEngine");
+  const engine::Capabilities can = engine_->capabilities();
+  expect(collision_ || can.detects || can.late, "collision detection", "collision", "ICollision");
 }
 
 World* PhysicsServer::findWorld() {

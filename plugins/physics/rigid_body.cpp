@@ -75,7 +75,7 @@ void RigidBody::describe(Description<RigidBody>& d) {
       .parameters({"mass [kg]", "centre [m]", "I11 I22 I33 [kg m^2]", "I12 I13 I23 [kg m^2]", "w x y z"})
       .doc(
           "Names a part of which the body consists, in the body's frame, with its inertia about its own centre: for "
-          "MuJoCo, whose drag and contacts depend on parts. The first one has the joints. The body's mass stays; parts "
+          "engines whose drag and contacts depend on parts. The first one has the joints. The body's mass stays; parts "
           "have shares of it, until its distribution is changed. The quaternion turns to its principal axes, where "
           "several fit.");
   d.method("translateMass", &B::translateMass)

@@ -2,7 +2,7 @@
 /// \file
 /// Rigid bodies.
 
-#include "mass.h"
+#include "api/mass.h"
 #include "world.h"
 
 namespace spark {

@@ -26,10 +26,10 @@ template <class J, class M>
 auto* parameterOf(J& j, M& motors, JointParameter p, int axis) {
   auto& a = j.axes[axis];
   auto& m = motors[axis];
-  decltype(&a.lowStop)
-      const all[] = {&a.lowStop,           &a.highStop, &m.velocity,    &m.maxForce,    &a.ode.fudgeFactor,
-                     &a.ode.bounce,        &a.ode.cfm,  &a.ode.stopErp, &a.ode.stopCfm, &j.ode.suspensionErp,
-                     &j.ode.suspensionCfm, &a.armature, &a.damping,     &a.dryFriction};
+  decltype(&a.lowStop) const all[] = {
+      &a.lowStop,  &a.highStop,     &m.velocity,     &m.maxForce,           &a.soft.fudgeFactor,   &a.soft.bounce,
+      &a.soft.cfm, &a.soft.stopErp, &a.soft.stopCfm, &j.soft.suspensionErp, &j.soft.suspensionCfm, &a.armature,
+      &a.damping,  &a.dryFriction};
   return all[static_cast<int>(p)];
 }
 

@@ -41,11 +41,11 @@ JointHandle WorldModel::createJoint(JointType type) {
   j.type = type;
   const engine::WorldParameters& p = model_.parameters;
   for (engine::JointAxis& a : j.axes) {
-    a.ode.cfm = a.ode.stopCfm = p.cfm;
-    a.ode.stopErp = p.erp;
+    a.soft.cfm = a.soft.stopCfm = p.cfm;
+    a.soft.stopErp = p.erp;
   }
-  j.ode.erp = j.ode.suspensionErp = p.erp;
-  j.ode.cfm = j.ode.suspensionCfm = p.cfm;
+  j.soft.erp = j.soft.suspensionErp = p.erp;
+  j.soft.cfm = j.soft.suspensionCfm = p.cfm;
   if (type == JointType::fixed) j.initialRotationA.fill(0);
   if (type != JointType::angularMotor) {
     j.axisA[0] = j.axisB[0] = j.planeA[0] = Vec3::UnitX();

@@ -342,6 +342,7 @@ void WorldModel::setBlocks(GeomHandle geom, const engine::Blocks& blocks) {
   if (blocks.empty() && own.empty()) return;
   own = blocks;
   markEdited(geoms_[geom]);
+  ++model_.dynamics;  // engines without a detection of their own read them, too
 }
 
 void WorldModel::setBlocks(JointHandle joint, const engine::Blocks& blocks) {

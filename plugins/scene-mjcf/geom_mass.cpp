@@ -1,6 +1,6 @@
 #include "geom_mass.h"
 
-#include "../physics/mass.h"
+#include "api/mass.h"
 
 namespace spark::mjcf {
 

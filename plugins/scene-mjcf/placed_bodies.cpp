@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "../physics/mass.h"
+#include "api/mass.h"
 
 namespace spark::mjcf {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "../physics/mass.h"
+#include "api/mass.h"
 #include "option_reader.h"
 #include "spring_damper.h"
 

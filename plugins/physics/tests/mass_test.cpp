@@ -1,4 +1,4 @@
-#include "../mass.h"
+#include "api/mass.h"
 
 #include <catch2/catch.hpp>
 
