@@ -39,7 +39,7 @@ struct JointData {
   engine::JointType type = engine::JointType::hinge;
   std::uint64_t attachedAt = 0, assembledAt = 0;  ///< as in the model
   std::array<engine::JointAxis, 3> axes;          ///< as passed to ODE
-  engine::Joint::Softness soft;                         ///< as passed to ODE
+  engine::Joint::Softness soft;                   ///< as passed to ODE
   dJointFeedback feedback{};
   bool wantsFeedback = false;
 };
