@@ -2,10 +2,12 @@
 /// \file
 /// MuJoCo as an engine of the physics server.
 
+#include "api/phases.h"
 #include "mujoco_nodes.h"
 #include "mujoco_solver.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
+#include "spark/link.h"
 
 namespace spark {
 
@@ -29,13 +31,14 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   static void describe(Description<MujocoEngine>& d) {
     d.doc("Rigid bodies and contacts by MuJoCo, in coordinates of joints.");
     engine::describeEngine(d);
+    d.link(&MujocoEngine::simulation_, At<ISimulation>());
     d.property("version", &MujocoEngine::version).doc("Version of the library.");
     d.property("atOnce", &MujocoEngine::atOnce_)
         .min(0)
         .doc(
             "Number of bodies up to which a changed world is compiled at once. That of more bodies is compiled in a "
-            "second thread, while all that is unchanged goes on; what is new stands still for some tenths of a "
-            "second.");
+            "second thread, while all that is unchanged goes on; what is new stands still meanwhile. In real time that "
+            "is until the compiler is ready, otherwise a number of steps that depends on the world alone.");
     d.property("compilations", &MujocoEngine::compilations).doc("Number of models that were compiled.");
   }
   Leaf& leaf() override { return *this; }
@@ -52,9 +55,12 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   friend class mujoco::MujocoSolver;
   std::string version() const { return mj_versionString(); }
   std::int64_t compilations() const { return compilations_; }
+  /// True when cycles keep to wall time and need not be alike from run to run.
+  bool isPaced() const { return simulation_ && simulation_->paced() && !simulation_->lockstep(); }
   /// Logs MuJoCo's last message: the 1st, 2nd, 4th, 8th ... time.
   void report(const std::string& message);
 
+  Link<ISimulation> simulation_;
   int atOnce_ = 60;
   std::int64_t compilations_ = 0, messages_ = 0;
 };

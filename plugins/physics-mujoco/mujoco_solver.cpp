@@ -1,5 +1,9 @@
 #include "mujoco_solver.h"
 
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -9,12 +13,18 @@ namespace spark::mujoco {
 
 namespace {
 
-/// Steps until a model that is compiled aside takes over. Compiling takes time with the square of the bodies (0.5 s for
-/// 530 of them on a machine of 2026); steps of 5 ms in real time leave it twice as long.
+/// Steps until a model that is compiled aside takes over, where runs must be alike. The compiler takes time with the
+/// square of the bodies, and so does this number, which the world alone decides.
 int stepsToCompile(std::size_t bodies) {
   constexpr std::size_t kBodySquaresPerStep = 1400;
   return 1 + static_cast<int>(bodies * bodies / kBodySquaresPerStep);
 }
+/// Compiles in a thread of its own. In real time the simulation's thread comes first, which others wait for.
+Compiled compileAside(const std::string& mjcf, bool paced) {
+  if (paced) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
+  return compileWorld(mjcf, true);
+}
+
 /// Steps for which a world that changes again and again may wait for its model.
 constexpr int kLongestWait = 400;
 
@@ -51,6 +61,8 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
 }
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
+  // The system takes back the memory of a large world in milliseconds: in another thread.
+  if (world_) ending_ = std::async(std::launch::async, [old = std::move(world_)]() mutable { old.reset(); });
   world_ = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
   world_->setFilter(filter_);
   ++engine_.compilations_;
@@ -64,7 +76,7 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.waited = waited;
   p.stepsLeft = stepsToCompile(model.bodies.size());
   p.trees.emplace(model, state);
-  p.compiled = std::async(std::launch::async, compileWorld, toMjcf(model, *p.trees, step_, sizes_));
+  p.compiled = std::async(std::launch::async, compileAside, toMjcf(model, *p.trees, step_, sizes_), engine_.isPaced());
 }
 
 void MujocoSolver::abandon() {
@@ -78,9 +90,14 @@ void MujocoSolver::takePending(const engine::Model& model) {
   Pending& p = pending_;
   if (!p.trees) return;
   ++p.waited;
-  if (--p.stepsLeft > 0) return;
+  --p.stepsLeft;
+  const bool ready = p.compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+  // In real time nobody waits: the model takes over when it is ready. Otherwise runs are alike, and wait here.
+  if (engine_.isPaced() ? !ready : p.stepsLeft > 0) return;
+  if (!ready)
+    engine_.kernel().log().info("{}: waits for MuJoCo's compiler, {} steps after the world changed", engine_.path(),
+                                p.waited);
   try {
-    // The number of steps does not depend on the machine, so that runs are alike: a slower one waits here.
     begin(model, std::move(*p.trees), p.compiled.get());
   } catch (const Error& e) {
     refuse(e.what());

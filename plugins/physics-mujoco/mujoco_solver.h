@@ -51,6 +51,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   bool full_ = false;    ///< no more room can be had
   std::string refused_;  ///< why the last model that was refused was
   Pending pending_;
+  std::future<void> ending_;                      ///< the world before
   std::vector<std::future<Compiled>> abandoned_;  ///< still compiling, not wanted any more
   engine::PairFilter filter_ = nullptr;           ///< of the last detect()
 };

@@ -37,11 +37,30 @@ double angleAbout(const Mat3& rotation, const Vec3& axis) {
 
 }  // namespace
 
-Compiled compileWorld(const std::string& mjcf) {
+namespace {
+/// Has the system provide the pages of a block of memory now, not when they are first used.
+void touch(void* block, std::size_t bytes) {
+  constexpr std::size_t kPage = 4096;
+  auto* const p = static_cast<volatile char*>(block);
+  for (std::size_t i = 0; i < bytes; i += kPage) p[i] = p[i];
+}
+}  // namespace
+
+Compiled compileWorld(const std::string& mjcf, bool ahead) {
   Compiled c;
   c.model = compile(mjcf);
   c.data.reset(mj_makeData(c.model.get()));
   if (!c.data) throw Error("MuJoCo has no memory for the world");
+  const mjModel& m = *c.model;
+  const auto number = [&m](std::unordered_map<std::string, int>& out, int count, const int* addresses) {
+    for (int i = 0; i < count; ++i) out.emplace(m.names + addresses[i], i);
+  };
+  number(c.bodies, m.nbody, m.name_bodyadr);
+  number(c.joints, m.njnt, m.name_jntadr);
+  number(c.geoms, m.ngeom, m.name_geomadr);
+  if (!ahead) return c;
+  touch(c.data->buffer, static_cast<std::size_t>(c.data->nbuffer));
+  touch(c.data->stack, static_cast<std::size_t>(c.data->nstack) * sizeof(mjtNum));
   return c;
 }
 
@@ -49,17 +68,20 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
     : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)) {
   linkOrigins_.resize(static_cast<std::size_t>(m_->nbody), Vec3::Zero());
   hasParts_.resize(static_cast<std::size_t>(m_->nbody), 0);
-  const auto id = [&](int kind, const std::string& name) { return mj_name2id(m_.get(), kind, name.c_str()); };
+  const auto id = [](const std::unordered_map<std::string, int>& numbers, const std::string& name) {
+    const auto found = numbers.find(name);
+    return found == numbers.end() ? -1 : found->second;
+  };
   for (Index i = 0; i < trees_.links.size(); ++i) {
     const Link& link = trees_.links[i];
     rootOf_.push_back(link.parent == kNone ? i : rootOf_[link.parent]);
     Origin& from = origins_.emplace_back();
     from.body = model.bodies[link.body].id;
-    from.mujocoBody = id(mjOBJ_BODY, bodyName(link.body));
+    from.mujocoBody = id(compiled.bodies, bodyName(link.body));
     if (from.mujocoBody >= 0)
       linkOrigins_[static_cast<std::size_t>(from.mujocoBody)] = model.bodies[link.body].linkOrigin;
     for (std::size_t part = 1; part < model.bodies[link.body].parts.size(); ++part)
-      if (const int at = id(mjOBJ_BODY, partName(link.body, part)); at >= 0) {
+      if (const int at = id(compiled.bodies, partName(link.body, part)); at >= 0) {
         from.parts.push_back(at);
         hasParts_[static_cast<std::size_t>(from.mujocoBody)] = 1;
       }
@@ -73,7 +95,7 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
     from.joint = j.id;
     from.attachedAt = j.attachedAt;
     for (int c = 0; c < coordinatesOf(j.type); ++c) {
-      const int joint = id(mjOBJ_JOINT, jointName(link.joint, c));
+      const int joint = id(compiled.joints, jointName(link.joint, c));
       from.joints.push_back(joint);
       if (j.type != JointType::ball) from.mujocoJoints[c] = joint;
     }
@@ -85,7 +107,7 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
   }
   geoms_.assign(m_->ngeom, 0);
   for (Index i = 0; i < model.geoms.size(); ++i)
-    if (const int geom = id(mjOBJ_GEOM, geomName(i)); geom >= 0) geoms_[geom] = model.geoms[i].id;
+    if (const int geom = id(compiled.geoms, geomName(i)); geom >= 0) geoms_[geom] = model.geoms[i].id;
 
   wrenches_.resize(static_cast<std::size_t>(m_->nbody));
   for (int body = 0; body < m_->nbody; ++body) {

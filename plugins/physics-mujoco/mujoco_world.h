@@ -2,6 +2,8 @@
 /// \file
 /// A world in MuJoCo: its model and data, and how the state goes there and back.
 
+#include <unordered_map>
+
 #include "api/engine.h"
 #include "library.h"
 #include "mjcf.h"
@@ -16,9 +18,12 @@ inline auto rotationAt(const mjtNum* m) { return Eigen::Map<const Eigen::Matrix<
 struct Compiled {
   ModelPointer model;
   DataPointer data;
+  /// Numbers of bodies, joints and geoms by name: mj_name2id() compares them one by one.
+  std::unordered_map<std::string, int> bodies, joints, geoms;
 };
-/// Compiles MJCF text; in any thread. Throws Error with MuJoCo's message.
-Compiled compileWorld(const std::string& mjcf);
+/// Compiles MJCF text; in any thread. Throws Error with MuJoCo's message. `ahead`: its memory is there when the first
+/// step begins, at the cost of time now.
+Compiled compileWorld(const std::string& mjcf, bool ahead = false);
 
 class MujocoWorld {
  public:

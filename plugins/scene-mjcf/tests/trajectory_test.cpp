@@ -335,6 +335,48 @@ TEST_CASE("Prints the joint angles of a T1 that stood and of one that moved", "[
   }
 }
 
+// For tools/accept engines: prints a line of JSON.
+TEST_CASE("Prints the longest cycle in real time while a T1 joins 22", "[.join]") {
+  MjcfHost host("t1.xml", 22);
+  host.kernel.plugins().use("simulation");
+  setProperty(host.kernel.create("Simulation", "/sys/server/simulation"), "rate", "real");
+  for (IJoint* j : host.joints)
+    j->control(0, {.stiffness = 100, .damping = 3, .position = 0, .velocity = 0, .maxForce = 100});
+  using Clock = std::chrono::steady_clock;
+  auto next = Clock::now();
+  const auto cycle = [&](auto work) {
+    const auto start = Clock::now();
+    work();
+    const double took = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    next = std::max(next + std::chrono::milliseconds(20), Clock::now());
+    std::this_thread::sleep_until(next);
+    return took;
+  };
+  std::vector<double> usual;
+  for (int i = 0; i < 100; ++i) usual.push_back(cycle([&] { host.step(); }));
+  const Leaf& engine = host.kernel.root().require<Leaf>("/sys/server/physics/engine");
+  const auto compiled = [&] { return getProperty(engine, "compilations").toInteger(); };
+  const std::int64_t before = compiled();
+  Node& parent = *host.scene->create("Transform").asNode();
+  callMethod(parent, "setLocalPos", List{-3.0, 0.0, 0.0});
+  const double import = cycle([&] {
+    callMethod(parent, "importScene", List{"t1.xml", "late-"});
+    host.step();
+  });
+  double waiting = 0, taking = 0;
+  int cycles = 1;
+  for (; compiled() == before && cycles < 3000; ++cycles) {
+    waiting = std::max(waiting, taking);
+    taking = cycle([&] { host.step(); });
+  }
+  for (int i = 0; i < 20; ++i) taking = std::max(taking, cycle([&] { host.step(); }));
+  fmt::print(
+      "{{\"cycle_ms\": {:.1f}, \"import_ms\": {:.1f}, \"waiting_ms\": {:.1f}, \"taking_ms\": {:.1f}, \"join_ms\": "
+      "{:.1f}, "
+      "\"cycles\": {}}}\n",
+      median(usual), import, waiting, taking, std::max({import, waiting, taking}), cycles);
+}
+
 // For tools/accept engines: prints a line of JSON for each engine and number of robots.
 TEST_CASE("Prints the cost of many T1 in each engine and in MuJoCo alone", "[.cost]") {
   for (const std::string engine : {"MujocoEngine", "ArticulatedEngine"})
