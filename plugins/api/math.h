@@ -40,6 +40,8 @@ struct Pose {
 inline Pose compose(const Pose& outer, const Pose& inner) {
   return {outer.position + outer.rotation * inner.position, outer.rotation * inner.rotation};
 }
+/// The pose of the outer frame in the given one.
+inline Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
 /// The rotation of a quaternion w x y z of length 1.
 inline Mat3 rotationOf(const std::array<double, 4>& q) {
   const double xx = 2 * q[1] * q[1], yy = 2 * q[2] * q[2], zz = 2 * q[3] * q[3];

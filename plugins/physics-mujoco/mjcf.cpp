@@ -17,102 +17,25 @@ using engine::Shape;
 
 namespace {
 
-Mat3 rotationWhenSet(const std::array<double, 4>& q) {
-  // All zeros: a fixed joint that was never set.
-  return q == std::array<double, 4>{} ? Mat3(Mat3::Identity()) : rotationOf(q);
-}
-
-/// The pose of body b in body a where the joint's coordinates are 0.
-Pose zeroOfB(const Joint& j, const Pose& now) {
-  Mat3 r = Mat3::Identity();
-  switch (j.type) {
-    case JointType::hinge:
-    case JointType::fixed:
-      r = rotationWhenSet(j.initialRotationA);
-      break;
-    case JointType::slider: {
-      r = rotationWhenSet(j.initialRotationA);
-      // anchorB is a's centre in b.
-      return {-(r * j.anchorB), r};
-    }
-    case JointType::universal: {
-      // The frame of (axis 1, axis 2) and that of (axis 2, axis 1) differ by an exchange of x and y.
-      Mat3 exchange;
-      exchange << 0, 1, 0, 1, 0, 0, 0, 0, -1;
-      r = rotationOf(j.initialRotationA) * exchange * rotationOf(j.initialRotationB).transpose();
-      break;
-    }
-    case JointType::hinge2: {
-      // Axis 2, its zero direction and theirs, in a and in b.
-      Mat3 inA, inB;
-      inA.col(0) = j.axisA[0], inA.col(1) = j.planeA[0], inA.col(2) = j.planeA[1];
-      const Vec3 axis2InA = j.cosAxes * j.axisA[0] + j.sinAxes * j.planeA[0];
-      const Vec3 axis1InB = j.cosAxes * j.axisB[1] + j.sinAxes * j.planeB[0];
-      inA.col(1) = axis2InA, inA.col(2) = j.axisA[0].cross(axis2InA);
-      inB.col(0) = axis1InB, inB.col(1) = j.axisB[1], inB.col(2) = axis1InB.cross(j.axisB[1]);
-      r = inA * inB.inverse();
-      break;
-    }
-    default:
-      r = now.rotation;
-      break;
-  }
-  return {j.anchorA - r * j.anchorB, r};
-}
-
-Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
-
 Pose poseOf(const engine::State& state, Index body) {
   if (body == kNone) return {};
   return {state.bodies[body].position, state.bodies[body].rotation};
 }
 
-bool canBeInTree(const Joint& j) { return j.a != kNone && j.type != JointType::angularMotor; }
-
 }  // namespace
 
 Trees::Trees(const Model& model, const engine::State& state) {
-  std::vector<bool> placed(model.bodies.size(), false);
-  std::vector<std::vector<Index>> jointsOf(model.bodies.size());
-  for (Index i = 0; i < model.joints.size(); ++i) {
-    const Joint& j = model.joints[i];
-    if (!canBeInTree(j)) continue;
-    jointsOf[j.a].push_back(i);
-    if (j.b != kNone) jointsOf[j.b].push_back(i);
+  for (const engine::TreeLink& from : engine::JointTrees(model).links) {
+    Link& link = links.emplace_back(Link{from, kNone, {}});
+    const Joint* const j = link.joint == kNone ? nullptr : &model.joints[link.joint];
+    if (j && j->type != JointType::ball) continue;
+    const Pose above = link.parent == kNone ? Pose{} : poseOf(state, links[link.parent].body);
+    link.zero = compose(inverse(above), poseOf(state, link.body));
+    if (!j) continue;
+    const Mat3 r = compose(inverse(poseOf(state, j->a)), poseOf(state, j->b)).rotation;
+    const Pose b{j->anchorA - r * j->anchorB, r};
+    link.zero = link.childIsA ? inverse(b) : b;
   }
-  std::vector<bool> used(model.joints.size(), false);
-  const auto add = [&](Index body, Index parent, Index joint) {
-    Link link{body, parent, joint, true, {}};
-    const Pose above = parent == kNone ? Pose{} : poseOf(state, links[parent].body), own = poseOf(state, body);
-    link.zero = compose(inverse(above), own);
-    if (joint != kNone) {
-      const Joint& j = model.joints[joint];
-      used[joint] = true;
-      link.childIsA = j.a == body;
-      const Pose b = zeroOfB(j, compose(inverse(poseOf(state, j.a)), poseOf(state, j.b)));
-      link.zero = link.childIsA ? inverse(b) : b;
-    }
-    placed[body] = true;
-    links.push_back(link);
-  };
-  // Bodies that a joint connects to the world are roots if they can be.
-  for (const bool toWorld : {true, false})
-    for (Index body = 0; body < model.bodies.size(); ++body) {
-      if (placed[body]) continue;
-      Index joint = kNone;
-      for (const Index j : jointsOf[body])
-        if (joint == kNone && model.joints[j].b == kNone) joint = j;
-      if (toWorld && joint == kNone) continue;
-      const std::size_t first = links.size();
-      add(body, kNone, joint);
-      for (std::size_t at = first; at < links.size(); ++at)
-        for (const Index j : jointsOf[links[at].body]) {
-          if (used[j]) continue;
-          const Joint& joint = model.joints[j];
-          const Index other = joint.a == links[at].body ? joint.b : joint.a;
-          if (other != kNone && !placed[other]) add(other, static_cast<Index>(at), j);
-        }
-    }
   mergeConnectors(model);
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "api/model.h"
+#include "api/joint_trees.h"
 #include "mujoco_nodes.h"
 
 namespace spark::mujoco {
@@ -14,18 +14,14 @@ using engine::Index;
 using engine::kNone;
 
 /// A body in its tree, parents first.
-struct Link {
-  Index body = 0;
-  Index parent = kNone;  ///< index in Tree::links; kNone: a root
-  Index joint = kNone;   ///< the joint to the parent, or of a root to the world; kNone: a root that is free
-  bool childIsA = true;  ///< the body is body a of that joint
-  Pose zero;             ///< of the body in its parent, or in the world, where the joint's coordinates are 0
+struct Link : engine::TreeLink {
   /// A connector whose joint belongs to another body in MuJoCo: the link of that body; kNone: the link has a body.
   Index carrier = kNone;
   Pose carrierInLink;  ///< pose of the carrier in this link, where the coordinates between them are 0
 };
 
-/// The trees that joints make of the bodies of a model. Joints that close a loop, and angular motors, are left over.
+/// The trees that joints make of the bodies of a model (see engine::JointTrees). The zero pose of a free body, and that
+/// of a ball, is the present one.
 struct Trees {
   std::vector<Link> links;
   explicit Trees(const engine::Model& model, const engine::State& state);
@@ -54,9 +50,10 @@ int coordinatesOf(engine::JointType type);
 /// implicit integrator needs MuJoCo's own.
 bool hasOwnDrag(const engine::Model& model);
 
-/// True when controllers are actuators of MuJoCo, named as their coordinates: an implicit integrator treats their
 /// The options of a model.
 OptionNumbers optionsOf(const engine::Model& model);
+
+/// True when controllers are actuators of MuJoCo, named as their coordinates: an implicit integrator treats their
 /// damping implicitly.
 bool hasActuators(const engine::Model& model);
 

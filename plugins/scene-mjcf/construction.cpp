@@ -5,8 +5,6 @@
 
 namespace spark::mjcf {
 
-Pose inverse(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
-
 Leaf* extensionOf(Leaf& element, const char* className) {
   constexpr const char* kName = "mujoco";
   Kernel& kernel = element.kernel();

@@ -36,8 +36,6 @@ struct Construction {
   bool withoutParts = false;  ///< has() found no class for a sensor or an actuator
 };
 
-Pose inverse(const Pose& p);
-
 /// The child `mujoco` of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin provides its
 /// class.
 Leaf* extensionOf(Leaf& element, const char* className);

@@ -30,8 +30,6 @@ Firmness firmness(Attributes& a) {
   return n;
 }
 
-Pose inverseOf(const Pose& p) { return {-(p.rotation.transpose() * p.position), p.rotation.transpose()}; }
-
 }  // namespace
 
 Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported) {
@@ -153,9 +151,9 @@ void Reader::body(const Element& e, const Scope& scope) {
     // Everything inside is in the world frame too. A body without a position has its frame at its centre of mass.
     b.isFrameOpen = !a.has("pos");
     const Pose given = compiler_.pose(a, {}), own = b.isFrameOpen ? Pose{} : given;
-    b.pose = compose(inverseOf(globalPoses_[static_cast<std::size_t>(scope.body)]), own);
+    b.pose = compose(inverse(globalPoses_[static_cast<std::size_t>(scope.body)]), own);
     globalPoses_.push_back(own);
-    inner.frame = inverseOf(own);
+    inner.frame = inverse(own);
   } else {
     b.pose = compiler_.pose(a, scope.frame);
   }
