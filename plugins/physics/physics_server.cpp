@@ -232,6 +232,7 @@ void PhysicsServer::solveLate(physics::WorldModel& world, double dt, int steps) 
   for (engine::Contact& c : contacts_) c.feedback = false;
   physics::runHandlers(contacts_, kernel(), true);
   physics::runSolved(contacts_, steps);
+  measured_.clear();
   if (measureForces_) physics::measure(contacts_, measured_);
 }
 
