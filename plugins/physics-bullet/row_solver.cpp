@@ -28,6 +28,7 @@ btScalar RowSolver::solveGroupCacheFriendlySetup(btCollisionObject**, int, btPer
 
 btScalar RowSolver::solveGroupCacheFriendlyFinish(btCollisionObject**, int, const btContactSolverInfo& info) {
   // Without that of btMultiBodyConstraintSolver: it writes to manifolds and links that we do not have.
+  // NOLINTNEXTLINE(bugprone-parent-virtual-call)
   return btSequentialImpulseConstraintSolver::solveGroupCacheFriendlyFinish(nullptr, 0, info);
 }
 

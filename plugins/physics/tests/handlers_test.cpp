@@ -293,3 +293,40 @@ TEST_CASE("bodies that are connected by a joint do not collide") {
   host.step();
   CHECK(seen.colliders().size() == 1);
 }
+
+TEST_CASE("handlers of an engine that finds contacts within its step see those of one that is given them") {
+  // Two boxes that fall on the ground and on each other, step by step: place, and what the handlers of one got.
+  const auto fall = [](const char* engine) {
+    Ground g;
+    g.kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
+    g.kernel.plugins().use("point-masses");
+    g.kernel.plugins().use("late-contacts");
+    g.kernel.registerClass<CountingHandler>();
+    Node& server = g.kernel.root().require<Node>("/sys/server/physics");
+    setProperty(server, "measureForces", true);
+    // Sleep asks for the contacts of the step before where they appear within the step.
+    setProperty(*g.scene.child("world"), "autoDisableFlag", false);
+    server.remove(*server.child("engine"));
+    server.create(engine, "engine");
+    auto& counts = static_cast<CountingHandler&>(g.collider().create("CountingHandler"));
+    g.box("upper", {0.1, 0, 1.6}, {1, 1, 1});
+    auto& recorder = g.scene.require<Node>("upper/collider").create("RecorderHandler");
+    g.scene.require<Node>("upper/collider").create("ContactJointHandler");
+    std::vector<double> out;
+    for (int i = 0; i < 60; ++i) {
+      g.step();
+      for (const char* const name : {"box", "upper"})
+        out.push_back(Ground::body(g.scene.require<Node>(name)).state().position.z());
+      for (const int n : {counts.direct, counts.symmetric, counts.solved}) out.push_back(n);
+      out.push_back(counts.force.z());
+      out.push_back(static_cast<double>(recorder.as<ICollisionRecorder>()->colliders().size()));
+      out.push_back(static_cast<double>(server.as<IPhysicsServer>()->contacts().size()));
+      for (const engine::Contact& c : server.as<IPhysicsServer>()->contacts()) out.push_back(c.forceOnA.z());
+    }
+    return out;
+  };
+  const std::vector<double> given = fall("PointMassEngine");
+  const std::vector<double> late = fall("LateEngine");
+  CHECK(given == late);
+  CHECK(given.size() > 60 * 8 + 100);
+}
