@@ -93,9 +93,10 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
 }
 
 void WorldModel::passMotor(Index joint, int axis) {
-  const engine::Motor& set = motors_[joint][axis];
-  const double friction = model_.joints[joint].axes[axis].dryFriction;
-  state_.motors[joint][axis] = set.maxForce > 0 || friction == 0 ? set : engine::Motor{0, friction};
+  engine::Motor& passed = state_.motors[joint][axis];
+  passed = motors_[joint][axis];
+  if (passed.maxForce > 0) return;  // in most calls; the joint's own numbers are far away
+  if (const double friction = model_.joints[joint].axes[axis].dryFriction; friction > 0) passed = {0, friction};
 }
 
 double WorldModel::parameter(JointHandle joint, JointParameter p, int axis) const {
