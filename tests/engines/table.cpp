@@ -148,7 +148,7 @@ TEST_CASE("the table of engines", "[.table]") {
   out << "# Engines\n\n![CPU time of a step, by engine](pictures/engines.svg)\n\n"
          "What each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
          "`build/release/tests/test-engines\n\"[.table]\"` measures, and writes this page and its chart; "
-         "`tests/engines` tests every \"yes\" and \"no\".\nPointMassEngine is an example of an engine "
+         "`tests/engines` tests every \"yes\" and \"no\".\nPointMassEngine and LateEngine are examples "
          "(`tests/fixtures`).\n\nMeasured on "
       << where << ".\n\n"
       << head << "\n"
