@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "api/contact_points.h"
 #include "api/joined_bodies.h"
 #include "convert.h"
 
@@ -139,22 +140,15 @@ void BulletDetector::touch(const Model& model, Index a, Index b) {
   dispatcher_.freeCollisionAlgorithm(algorithm);
 }
 
-/// The deepest, then each time the one that is farthest from those that were chosen: what lies on them does not tip.
 void BulletDetector::thinOut(std::size_t most) {
   if (found_.size() <= most) return;
-  std::size_t next = 0;
-  for (std::size_t i = 1; i < found_.size(); ++i)
-    if (found_[i].depth > found_[next].depth) next = i;
-  apart_.assign(found_.size(), HUGE_VAL);
-  for (std::size_t n = 0; n < most; ++n) {
-    std::swap(found_[n], found_[next]);
-    std::swap(apart_[n], apart_[next]);
-    for (std::size_t i = n + 1; i < found_.size(); ++i)
-      apart_[i] = std::min(apart_[i], (found_[i].position - found_[n].position).squaredNorm());
-    next = static_cast<std::size_t>(
-        std::max_element(apart_.begin() + static_cast<std::ptrdiff_t>(n) + 1, apart_.end()) - apart_.begin());
-  }
-  found_.resize(most);
+  engine::choosePoints(
+      found_.size(), most, [this](std::size_t i) { return found_[i].position; },
+      [this](std::size_t i) { return found_[i].depth; }, apart_);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < apart_.size(); ++i)
+    if (apart_[i] < 0) found_[kept++] = found_[i];
+  found_.resize(kept);
 }
 
 void BulletDetector::detect(const Model& model, const State& state, engine::PairFilter filter, int perPair,
@@ -164,7 +158,7 @@ void BulletDetector::detect(const Model& model, const State& state, engine::Pair
   findPairs(model, filter);
   for (const auto& [a, b] : pairs_) {
     touch(model, a, b);
-    thinOut(static_cast<std::size_t>(std::max(perPair, 0)));
+    thinOut(static_cast<std::size_t>(std::max(perPair, 1)));
     const Geom &first = model.geoms[a], &second = model.geoms[b];
     for (const Found& f : found_) {
       engine::Contact& c = out.emplace_back();

@@ -44,7 +44,7 @@ class RowSolver : public btMultiBodyConstraintSolver {
  public:
   struct Options {
     double dt = 0.01;      ///< s
-    int direct = 1000;     ///< up to so many rows are solved directly
+    int direct = 1000;     ///< largest number of rows of an island that is solved directly
     int iterations = 300;  ///< at most
     /// Change of velocity in one iteration that ends them [m/s or rad/s].
     double tolerance = 1e-6;

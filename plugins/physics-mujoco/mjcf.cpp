@@ -148,9 +148,9 @@ struct Writer {
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
     putPose(pose);
     const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
-    put(R"( friction="{:.17g}" condim="{}" priority="{}" solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")",
-        fmt::join(m.friction, " "), m.condim, m.priority, fmt::join(m.solref, " "), fmt::join(m.solimp, " "), m.margin,
-        m.gap);
+    put(R"( friction="{:.17g}" condim="{}" priority="{}")", fmt::join(m.friction, " "), m.condim, m.priority);
+    put(R"( solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")", fmt::join(m.solref, " "),
+        fmt::join(m.solimp, " "), m.margin, m.gap);
     put("/>\n");
   }
 

@@ -13,13 +13,13 @@ namespace spark::mujoco {
 
 namespace {
 
-/// Steps until a model that is compiled aside takes over, where runs must be alike. The compiler takes time with the
-/// square of the bodies, and so does this number, which the world alone decides.
+/// Steps until a model that is compiled aside takes over, where equal runs must give equal results. Like the compiler's
+/// time, the number grows with the square of the bodies; it depends on the world alone.
 int stepsToCompile(std::size_t bodies) {
   constexpr std::size_t kBodySquaresPerStep = 1400;
   return 1 + static_cast<int>(bodies * bodies / kBodySquaresPerStep);
 }
-/// Compiles in a thread of its own. In real time the simulation's thread comes first, which others wait for.
+/// Compiles in a thread of its own. In real time it has the lowest priority, so that it does not slow the simulation.
 Compiled compileAside(const std::string& mjcf, bool paced) {
   if (paced) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
   return compileWorld(mjcf, true);
@@ -92,7 +92,8 @@ void MujocoSolver::takePending(const engine::Model& model) {
   ++p.waited;
   --p.stepsLeft;
   const bool ready = p.compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  // In real time nobody waits: the model takes over when it is ready. Otherwise runs are alike, and wait here.
+  // In real time the model takes over as soon as it is ready. Otherwise it takes over after a fixed number of steps, so
+  // that equal runs give equal results, and the simulation may have to wait for it here.
   if (engine_.isPaced() ? !ready : p.stepsLeft > 0) return;
   if (!ready)
     engine_.kernel().log().info("{}: waits for MuJoCo's compiler, {} steps after the world changed", engine_.path(),

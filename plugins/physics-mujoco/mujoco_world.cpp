@@ -16,11 +16,6 @@ using engine::State;
 
 namespace {
 
-std::uint64_t pairOf(Index a, Index b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
-bool contains(const std::vector<std::uint64_t>& sorted, std::uint64_t pair) {
-  return std::binary_search(sorted.begin(), sorted.end(), pair);
-}
-
 const DynamicState& worldState() {
   static const DynamicState state;
   return state;
@@ -338,117 +333,6 @@ Vec3 MujocoWorld::armOf(int body, const Vec3& point) const {
 Vec3 MujocoWorld::velocityOf(int body, const Vec3& point) const {
   const mjtNum* spatial = d_->cvel + 6 * body;  // rotation, translation at the tree's centre of mass
   return toVec(spatial + 3) + toVec(spatial).cross(armOf(body, point));
-}
-
-// ---- contacts ----
-
-bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
-  const MujocoWorld& w = *static_cast<MujocoWorld*>(world);
-  const Index i = w.geomOf_[geom1], k = w.geomOf_[geom2];
-  if (i == kNone || k == kNone) return false;
-  const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
-  if (a.body != kNone && a.body == b.body) return false;
-  if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
-  if (a.body != kNone && b.body != kNone && contains(w.joined_, pairOf(a.body, b.body))) return false;
-  return !w.filter_ || w.filter_(a.owner, b.owner);
-}
-
-void MujocoWorld::prepare(const Model& model) {
-  model_ = &model;
-  const Session session(message_, m_.get(), mayTouch, this);
-  mj_step1(m_.get(), d_.get());
-  prepared_ = true;
-  findSpare();
-}
-
-void MujocoWorld::findSpare() {
-  pairs_.clear();
-  for (int i = 0; i < d_->ncon; ++i)
-    pairs_.emplace_back(pairOf(geomOf_[d_->contact[i].geom1], geomOf_[d_->contact[i].geom2]), i);
-  std::sort(pairs_.begin(), pairs_.end());
-  spare_.clear();
-  for (std::size_t first = 0, end; first < pairs_.size(); first = end) {
-    end = first + 1;
-    while (end < pairs_.size() && pairs_[end].first == pairs_[first].first) ++end;
-    if (end - first > static_cast<std::size_t>(perPair_)) thinOut({pairs_.data() + first, end - first});
-  }
-}
-
-void MujocoWorld::thinOut(std::span<const std::pair<std::uint64_t, int>> pair) {
-  spare_.resize(pairs_.size());
-  const auto contact = [&](std::size_t i) -> const mjContact& { return d_->contact[pair[i].second]; };
-  // The deepest, then each time the one that is farthest from those that were chosen: what lies on them does not tip.
-  std::size_t next = 0;
-  for (std::size_t i = 1; i < pair.size(); ++i)
-    if (contact(i).dist < contact(next).dist) next = i;
-  apart_.assign(pair.size(), HUGE_VAL);
-  for (int n = 0; n < perPair_; ++n) {
-    apart_[next] = -1;
-    const Vec3 chosen = toVec(contact(next).pos);
-    for (std::size_t i = 0; i < pair.size(); ++i)
-      if (apart_[i] >= 0) apart_[i] = std::min(apart_[i], (toVec(contact(i).pos) - chosen).squaredNorm());
-    next = static_cast<std::size_t>(std::max_element(apart_.begin(), apart_.end()) - apart_.begin());
-  }
-  for (std::size_t i = 0; i < pair.size(); ++i)
-    if (apart_[i] >= 0) spare_[static_cast<std::size_t>(pair[i].second)] = 1;
-}
-
-void MujocoWorld::prepareAgain(const Model& model) {
-  listed_.clear();
-  prepare(model);
-}
-
-void MujocoWorld::detect(const Model& model, const State& state, engine::PairFilter filter, int perPair,
-                         engine::Contacts& out) {
-  filter_ = filter;
-  perPair_ = perPair;
-  take(model, state);
-  prepare(model);
-  listed_.clear();
-  for (int i = 0; i < d_->ncon; ++i) {
-    if (isSpare(i)) continue;
-    const mjContact& from = d_->contact[i];
-    Index a = geomOf_[from.geom1], b = geomOf_[from.geom2];
-    const bool swapped = !engine::comesFirst(model.geoms[a], model.geoms[b]);
-    if (swapped) std::swap(a, b);
-    Contact& c = out.emplace_back();
-    c.geomA = a, c.geomB = b;
-    c.bodyA = model.geoms[a].body, c.bodyB = model.geoms[b].body;
-    c.ownerA = model.geoms[a].owner, c.ownerB = model.geoms[b].owner;
-    c.position = toVec(from.pos);
-    // MuJoCo's normal points from the first geom to the second.
-    c.normal = (swapped ? 1 : -1) * toVec(from.frame);
-    c.depth = std::max(0.0, -from.dist);
-    listed_.push_back(i);
-  }
-}
-
-void MujocoWorld::releaseUnsolved(std::span<const Contact> contacts) {
-  ghosts_.clear();
-  for (const Contact& c : contacts)
-    if (!c.solve) ghosts_.push_back(pairOf(c.geomA, c.geomB));
-  std::sort(ghosts_.begin(), ghosts_.end());
-  for (int i = 0; i < d_->ncon; ++i) {
-    const mjContact& c = d_->contact[i];
-    if (c.efc_address < 0) continue;
-    if (!isSpare(i) && !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
-    const int rows = c.dim == 1 ? 1 : m_->opt.cone == mjCONE_PYRAMIDAL ? 2 * (c.dim - 1) : c.dim;
-    for (int row = c.efc_address; row < c.efc_address + rows; ++row) d_->efc_D[row] = 1e-15, d_->efc_R[row] = 1e15;
-  }
-}
-
-void MujocoWorld::readContactForces(std::span<Contact> contacts) const {
-  if (contacts.size() != listed_.size()) return;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    Contact& c = contacts[i];
-    if (!c.feedback || !c.solve) continue;
-    mjtNum force[6];  // in the contact's frame, on the second geom
-    mj_contactForce(m_.get(), d_.get(), listed_[i], force);
-    const mjContact& from = d_->contact[listed_[i]];
-    Vec3 onSecond = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) onSecond += force[k] * toVec(from.frame + 3 * k);
-    c.forceOnA = geomOf_[from.geom2] == c.geomA ? onSecond : Vec3(-onSecond);
-  }
 }
 
 // ---- steps ----

@@ -2,6 +2,7 @@
 /// \file
 /// A world in MuJoCo: its model and data, and how the state goes there and back.
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "api/engine.h"
@@ -13,6 +14,9 @@ namespace spark::mujoco {
 // A vector and a rotation in MuJoCo's memory.
 inline Vec3 toVec(const mjtNum* v) { return {v[0], v[1], v[2]}; }
 inline auto rotationAt(const mjtNum* m) { return Eigen::Map<const Eigen::Matrix<mjtNum, 3, 3, Eigen::RowMajor>>(m); }
+
+/// A pair of elements, whichever is first.
+inline std::uint64_t pairOf(Index a, Index b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
 
 /// A model and its data.
 struct Compiled {
