@@ -14,13 +14,6 @@ namespace {
 /// In the order of Level.
 constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::trace, spdlog::level::debug, spdlog::level::info,
                                                  spdlog::level::warn,  spdlog::level::err,   spdlog::level::off};
-
-/// The beginning of a text, which ends between two characters of UTF-8, with a mark.
-std::string cut(std::string_view text, std::size_t bytes) {
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0) == 0x80; };
-  while (bytes > 0 && continues(text[bytes])) --bytes;
-  return fmt::format("{} ... ({} bytes were cut)", text.substr(0, bytes), text.size() - bytes);
-}
 }  // namespace
 
 void LogSink::describe(Description<LogSink>& d) {
@@ -63,7 +56,7 @@ void LogSink::restart() {
     const auto log = [&](std::string_view t) {
       logger->log(kLevels[static_cast<int>(level)], spdlog::string_view_t(t.data(), t.size()));
     };
-    text.size() <= most ? log(text) : log(cut(text, most));
+    text.size() <= most ? log(text) : log(shortened(text, most));
   });
 }
 

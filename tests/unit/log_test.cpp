@@ -69,3 +69,11 @@ TEST_CASE("Levels have names") {
   CHECK_THROWS_WITH(spark::levelFromName("warnin"),
                     Catch::Contains("expected a log level") && Catch::Contains("'warning'"));
 }
+
+TEST_CASE("A text is shortened in whole characters, with a mark") {
+  CHECK(spark::shortened("short", 5) == "short");
+  CHECK(spark::shortened("longer", 5) == "longe ... (1 bytes were cut)");
+  // Umlauts have two bytes.
+  CHECK(spark::shortened("a\xc3\xbc\xc3\xbc", 4) == "a\xc3\xbc ... (2 bytes were cut)");
+  CHECK(spark::shortened("\xc3\xbc", 1) == " ... (2 bytes were cut)");
+}

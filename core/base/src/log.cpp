@@ -10,6 +10,12 @@
 
 namespace spark {
 
+std::string shortened(std::string_view text, std::size_t bytes) {
+  if (text.size() <= bytes) return std::string(text);
+  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
+  return fmt::format("{} ... ({} bytes were cut)", text.substr(0, bytes), text.size() - bytes);
+}
+
 struct Log::Impl {
   struct Further {
     int number;

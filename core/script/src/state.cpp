@@ -31,13 +31,6 @@ int callBody(lua_State* L) {
   return 0;
 }
 
-/// Cuts a text between two characters of UTF-8 and marks it.
-void cut(std::string& text, std::size_t bytes) {
-  if (text.size() <= bytes) return;
-  while (bytes > 0 && (static_cast<unsigned char>(text[bytes]) & 0xc0) == 0x80) --bytes;
-  text = fmt::format("{} ... ({} bytes were cut)", std::string_view(text).substr(0, bytes), text.size() - bytes);
-}
-
 /// True for Lua's own error of calls that are too deep, which has no other mark. Where it is caught and raised again,
 /// the handler takes as long.
 bool isStackOverflow(const Failure& failure) { return failure.text.find("stack overflow") != std::string::npos; }
@@ -168,7 +161,7 @@ int State::describeError(lua_State* L) {
   State& state = of(L);
   Failure failure;
   appendText(L, 1, failure.text);
-  cut(failure.text, kLongestError);
+  failure.text = shortened(failure.text, kLongestError);
   failure.text += nearGlobals(L, failure.text);
   // The traceback: one line for each Lua function. The first is omitted if the message begins with its location.
   lua_Debug ar{};

@@ -25,6 +25,9 @@ Level levelFromName(std::string_view name);
 const std::vector<std::string>& levelNames();
 /// The name of a level.
 const std::string& nameOf(Level level);
+/// At most `bytes` of a text of UTF-8, in whole characters, with a mark that says how much was cut; a text that is no
+/// longer as it is.
+std::string shortened(std::string_view text, std::size_t bytes);
 
 /// A kernel's log. A message below the level costs one comparison.
 class Log {
