@@ -155,8 +155,8 @@ struct Capabilities {
   bool surfaces = true;      ///< contacts have bounce, slip, and friction as a force, each its own
   bool restores = true;      ///< a restored world continues bit for bit, also with another solver of the engine
   bool parts = true;         ///< it can step some islands alone (Step::only), as another engine's deferred engine
-  bool detects = false;      ///< it finds contacts itself, and needs no ICollision
-  bool late = false;         ///< it finds contacts within its step, and passes them to Step::sink; needs no ICollision
+  bool detects = false;      ///< it finds contacts itself, before the step (ISolver::detector())
+  bool late = false;         ///< it finds contacts within its step, and passes them to Step::sink
   bool controls = false;     ///< it applies State::controls. Otherwise they come as forces on the bodies; in both cases
                              ///< dry friction of controlled axes comes as a motor of speed 0
   bool damping = false;      ///< it applies JointAxis::damping. Otherwise it comes as forces
@@ -165,6 +165,8 @@ struct Capabilities {
   /// The length of step that suits it [s], of which a step of the simulation has a whole number; 0: any. That of the
   /// world (WorldParameters::timestep) comes first.
   double usualStep = 0;
+  /// It needs no ICollision.
+  bool findsContacts() const { return detects || late; }
 };
 
 /// The capabilities that a user notices, by name, as in docs/engines.md.

@@ -3,19 +3,18 @@
 /// Numbers that one engine knows of an element of a world: blocks of plain data beside the model, made by nodes of that
 /// engine's plugin. The plugin `physics` passes them on and does not read them.
 ///
-///     struct Surface {
+///     struct Numbers {
 ///       static constexpr std::string_view kKind = "JoltSurface";
-///       double restitution = 0;
+///       double bounce = 0;
 ///     };
-///     class JoltSurface : public engine::Extension<Surface> {      // a child of a collider
+///     class JoltSurface : public engine::Extension<Numbers> {      // a child of a collider
 ///       SPARK_CLASS(JoltSurface, Leaf)
 ///       static void describe(Description<JoltSurface>& d) {
-///         describeExtension(d, "What Jolt alone reads of a collider.");
-///         d.property("restitution", &JoltSurface::get<&Surface::restitution>,
-///         &JoltSurface::set<&Surface::restitution>);
+///         engine::describeExtension(d, "What Jolt alone reads of a collider.");
+///         d.property("bounce", &JoltSurface::get<&Numbers::bounce>, &JoltSurface::set<&Numbers::bounce>);
 ///       }
 ///     };
-///     model.extensions.geoms[i].get<Surface>().restitution         // in the engine
+///     model.extensions.geoms[i].get<Numbers>().bounce              // in the engine
 
 #include <fmt/format.h>
 
@@ -68,10 +67,6 @@ class Extension : public Leaf, public IExtension {
  protected:
   /// Which of several blocks of this kind in one element it is.
   virtual int number() const { return 0; }
-  void change(const T& numbers) {
-    numbers_ = numbers;
-    pass();
-  }
   /// Passes the numbers to the element; before the node is linked it does nothing.
   void pass() {
     if (above_) above_->setBlock(Block::of(numbers_, number()));

@@ -1,6 +1,8 @@
 #include "contact_loop.h"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 
 namespace spark::physics {
 namespace {
@@ -58,12 +60,17 @@ void decide(std::span<engine::Contact> pair) {
   }
 }
 
-void sortByPair(engine::Contacts& contacts, const engine::Model& model) {
-  const auto key = [&](const engine::Contact& c) {
-    return std::pair(model.geoms[c.geomA].id, model.geoms[c.geomB].id);
+void sortByPair(engine::Contacts& contacts, const engine::Model& model, std::vector<std::size_t>& order,
+                engine::Contacts& sorted) {
+  const auto key = [&](std::size_t i) {
+    return std::tuple(model.geoms[contacts[i].geomA].id, model.geoms[contacts[i].geomB].id, i);
   };
-  std::stable_sort(contacts.begin(), contacts.end(),
-                   [&](const engine::Contact& x, const engine::Contact& y) { return key(x) < key(y); });
+  order.resize(contacts.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return key(x) < key(y); });
+  sorted.clear();
+  for (const std::size_t i : order) sorted.push_back(contacts[i]);
+  contacts.swap(sorted);
 }
 
 void runHandlers(engine::Contacts& contacts, Kernel& kernel, bool decided) {

@@ -22,8 +22,9 @@ bool pairCounts(void* ownerA, void* ownerB);
 
 /// Sets `solve` and `surface` of the contacts of a pair. In any thread.
 void decide(std::span<engine::Contact> pair);
-/// Sorts contacts by the age of their geoms; those of a pair keep their order.
-void sortByPair(engine::Contacts& contacts, const engine::Model& model);
+/// Sorts contacts by the age of their geoms; those of a pair keep their order. `order` and `sorted` are its memory.
+void sortByPair(engine::Contacts& contacts, const engine::Model& model, std::vector<std::size_t>& order,
+                engine::Contacts& sorted);
 /// Decides on the contacts, unless they are `decided`, and calls the handlers before the solver. When a handler changes
 /// the tree, it logs an error, removes all contacts and returns.
 void runHandlers(engine::Contacts& contacts, Kernel& kernel, bool decided = false);

@@ -1,20 +1,13 @@
 #include "effects.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "api/joint_trees.h"
 
 namespace spark::physics {
 
 using engine::Index;
 using engine::kNone;
-
-namespace {
-/// The root of the set that a body is in.
-Index find(std::vector<Index>& parent, Index i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-}  // namespace
 
 void Effects::check(engine::IEngine& engine, const engine::Model& model) {
   if (engine_.get() != &engine.leaf()) {
@@ -38,26 +31,22 @@ void Effects::checkJoints(const engine::Capabilities& can, const engine::Model& 
     if (i == kNone || model.joints[i].a == kNone) continue;
     const engine::Joint& j = model.joints[i];
     if (!can.joints) return say(kJoints, *node, "joints have");
-    const bool motor = j.type == engine::JointType::angularMotor;
-    if (!can.loops && motor) say(kAngularMotors, *node, "angular motors have");
     if (!can.jointForces && j.wantsFeedback) say(kJointForces, *node, "the measuring of forces has");
     if (!can.armature && std::any_of(j.axes.begin(), j.axes.end(), [](const auto& a) { return a.armature > 0; }))
       say(kArmature, *node, "the inertia of rotors (armature) has");
   }
-  if (!can.loops && !said_[kLoops]) checkLoops(model);
+  if (!can.loops && !(said_[kLoops] && said_[kAngularMotors])) checkLoops(model);
 }
 
 void Effects::checkLoops(const engine::Model& model) {
-  // Bodies that joints connect, in one set; the last element is the world.
-  std::vector<Index> parent(model.bodies.size() + 1);
-  std::iota(parent.begin(), parent.end(), 0);
+  const std::vector<Index> leftOver = engine::JointTrees(model).leftOver;
   for (const Joint* node : joints) {
     const Index i = node->index();
-    if (i == kNone || model.joints[i].a == kNone || model.joints[i].type == engine::JointType::angularMotor) continue;
-    const Index b = model.joints[i].b == kNone ? static_cast<Index>(model.bodies.size()) : model.joints[i].b;
-    const Index rootA = find(parent, model.joints[i].a), rootB = find(parent, b);
-    if (rootA == rootB) return say(kLoops, *node, "joints that close a loop of bodies have");
-    parent[rootA] = rootB;
+    if (!std::binary_search(leftOver.begin(), leftOver.end(), i)) continue;
+    if (model.joints[i].type == engine::JointType::angularMotor)
+      say(kAngularMotors, *node, "angular motors have");
+    else
+      say(kLoops, *node, "joints that close a loop of bodies have");
   }
 }
 

@@ -31,10 +31,9 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
           "solver's results may differ from a run without.");
   d.property("exactReplay", &S::exactReplay_)
       .doc(
-          "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with the engine "
-          "and "
-          "the collision detection of that base: numbers that enter them are rounded to single precision, and contacts "
-          "are solved in the order in which its spaces report them.");
+          "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with that base's "
+          "engine and collision detection: numbers that enter them are rounded to single precision, and contacts are "
+          "solved in the order in which its spaces report them.");
   d.property("contactsPerPair", &S::contactsPerPair_)
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
@@ -54,8 +53,7 @@ void PhysicsServer::expectEngines() const {
                             what, interface, name));
   };
   expect(static_cast<bool>(engine_), "engine", "engine", "IEngine");
-  const engine::Capabilities can = engine_->capabilities();
-  expect(collision_ || can.detects || can.late, "collision detection", "collision", "ICollision");
+  expect(collision_ || engine_->capabilities().findsContacts(), "collision detection", "collision", "ICollision");
 }
 
 World* PhysicsServer::findWorld() {
@@ -227,7 +225,7 @@ void PhysicsServer::solveLate(physics::WorldModel& world, double dt, int steps) 
   Sink sink(contacts_, contactsPerPair_);
   world.step(*engine_, contacts_, dt, &sink);
   contactsAt_ = kernel().structureVersion();
-  physics::sortByPair(contacts_, world.model());
+  physics::sortByPair(contacts_, world.model(), order_, sorted_);
   // All forces are there, but handlers see those that they ask for.
   for (engine::Contact& c : contacts_) c.feedback = false;
   physics::runHandlers(contacts_, kernel(), true);

@@ -70,9 +70,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void shiftSurroundings();
   /// Logs the bodies that had to be reset.
   void reportFaults();
-  bool hasEngines() const {
-    return engine_ && (collision_ || engine_->capabilities().detects || engine_->capabilities().late);
-  }
+  bool hasEngines() const { return engine_ && (collision_ || engine_->capabilities().findsContacts()); }
   /// Logs once that the world cannot be stepped.
   void lacksEngines();
   bool defaultOnTransform() const { return defaultOnTransform_; }
@@ -94,6 +92,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   physics::RayScene rays_;
   physics::Effects effects_;
   engine::Contacts contacts_;
+  std::vector<std::size_t> order_;  ///< of solveLate(), with sorted_
+  engine::Contacts sorted_;
   std::uint64_t contactsAt_ = 0;       ///< version of the tree when they were detected
   std::vector<std::size_t> measured_;  ///< indices of contacts that have feedback only because of measureForces
 };

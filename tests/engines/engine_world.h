@@ -58,7 +58,7 @@ struct EngineWorld : TestHost, engine::IContactSink {
   }
   /// ODE's collision detection, unless the engine has its own.
   void makeCollision() {
-    if (!can.detects && !can.late) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
+    if (!can.findsContacts()) collision = &kernel.create<engine::ICollision>("OdeCollision", "/sys/collision");
   }
   void makeEngine() {
     engine = &kernel.create<engine::IEngine>(kind.name, "/sys/engine");
