@@ -29,9 +29,20 @@ struct Block {
   template <class T>
   static Block of(const T& value, int number = 0) {
     static_assert(std::is_trivially_copyable_v<T> && sizeof(T) % sizeof(double) == 0);
-    Block b{kindOf(T::kKind) + static_cast<std::uint64_t>(number), std::vector<double>(sizeof(T) / sizeof(double))};
+    Block b{kindOf<T>(number), std::vector<double>(sizeof(T) / sizeof(double))};
     std::memcpy(b.data.data(), &value, sizeof value);
     return b;
+  }
+  template <class T>
+  static constexpr std::uint64_t kindOf(int number = 0) {
+    return engine::kindOf(T::kKind) + static_cast<std::uint64_t>(number);
+  }
+  /// Its numbers; the default values if it has not as many.
+  template <class T>
+  T as() const {
+    T out{};
+    if (data.size() * sizeof(double) == sizeof out) std::memcpy(static_cast<void*>(&out), data.data(), sizeof out);
+    return out;
   }
 };
 
@@ -41,11 +52,16 @@ class Blocks {
   /// The block of a type, its default values if there is none.
   template <class T>
   T get(int number = 0) const {
-    T out{};
-    const std::uint64_t kind = kindOf(T::kKind) + static_cast<std::uint64_t>(number);
     for (const Block& b : blocks_)
-      if (b.kind == kind && b.data.size() * sizeof(double) == sizeof out)
-        std::memcpy(static_cast<void*>(&out), b.data.data(), sizeof out);
+      if (b.kind == Block::kindOf<T>(number)) return b.as<T>();
+    return {};
+  }
+  /// Those of a type with numbers below `numbers`, in the order in which they were set.
+  template <class T>
+  std::vector<T> all(std::uint64_t numbers) const {
+    std::vector<T> out;
+    for (const Block& b : blocks_)
+      if (b.kind - kindOf(T::kKind) < numbers) out.push_back(b.as<T>());
     return out;
   }
   void set(const Block& block) {

@@ -15,10 +15,12 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "api/model.h"
+#include "api/contacts.h"
+#include "api/state.h"
 #include "spark/abi/api/engine.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"

@@ -19,10 +19,19 @@ inline Mat3 rotationWhenSet(const std::array<double, 4>& q) {
 inline Mat3 zeroOfWheel(const Joint& j) {
   // The axes as columns, in a and in b.
   Mat3 inA, inB;
-  const Vec3 axis2InA = j.cosAxes * j.axisA[0] + j.sinAxes * j.planeA[0];
-  const Vec3 axis1InB = j.cosAxes * j.axisB[1] + j.sinAxes * j.planeB[0];
-  inA << j.axisA[0], axis2InA, j.axisA[0].cross(axis2InA);
-  inB << axis1InB, j.axisB[1], axis1InB.cross(j.axisB[1]);
+  const Vec3 axis2InA = j.cosAxes * j.inA.axis[0] + j.sinAxes * j.inA.axis[1];
+  const Vec3 axis1InB = j.cosAxes * j.inB.axis[1] + j.sinAxes * j.inB.axis[0];
+  inA << j.inA.axis[0], axis2InA, j.inA.axis[0].cross(axis2InA);
+  inB << axis1InB, j.inB.axis[1], axis1InB.cross(j.inB.axis[1]);
+  return inA * inB.inverse();
+}
+
+/// The rotation of body b in body a where the angles of an Euler motor are 0: two axes are where they were when set.
+inline Mat3 zeroOfEuler(const Joint& j) {
+  Mat3 inA, inB;
+  if (j.inA.axis[0].cross(j.inA.axis[2]).norm() < 1e-9) return Mat3::Identity();  // not set yet
+  inA << j.inA.axis[0], j.inA.axis[2], j.inA.axis[0].cross(j.inA.axis[2]);
+  inB << j.inB.axis[0], j.inB.axis[2], j.inB.axis[0].cross(j.inB.axis[2]);
   return inA * inB.inverse();
 }
 
@@ -34,26 +43,29 @@ inline Pose zeroPose(const Joint& j) {
   switch (j.type) {
     case JointType::hinge:
     case JointType::fixed:
-      r = detail::rotationWhenSet(j.initialRotationA);
+      r = detail::rotationWhenSet(j.inA.rotation);
       break;
     case JointType::slider:
-      r = detail::rotationWhenSet(j.initialRotationA);
-      // anchorB is a's centre in b.
-      return {-(r * j.anchorB), r};
+      r = detail::rotationWhenSet(j.inA.rotation);
+      // inB.anchor is a's centre in b.
+      return {-(r * j.inB.anchor), r};
     case JointType::universal: {
       // The frame of (axis 1, axis 2) and that of (axis 2, axis 1) differ by an exchange of x and y.
       Mat3 exchange;
       exchange << 0, 1, 0, 1, 0, 0, 0, 0, -1;
-      r = rotationOf(j.initialRotationA) * exchange * rotationOf(j.initialRotationB).transpose();
+      r = rotationOf(j.inA.rotation) * exchange * rotationOf(j.inB.rotation).transpose();
       break;
     }
     case JointType::hinge2:
       r = detail::zeroOfWheel(j);
       break;
+    case JointType::angularMotor:
+      if (j.motor.euler) r = detail::zeroOfEuler(j);
+      break;
     default:
       break;
   }
-  return {j.anchorA - r * j.anchorB, r};
+  return {j.inA.anchor - r * j.inB.anchor, r};
 }
 
 /// A body in its tree.

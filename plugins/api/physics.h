@@ -10,6 +10,7 @@
 #include "api/engine.h"
 #include "api/phases.h"
 #include "api/scene.h"
+#include "api/scene_joint.h"
 #include "spark/abi/api/physics.h"
 
 namespace spark {

@@ -18,7 +18,10 @@ class ArticulatedSolver : public engine::ISolver {
  public:
   /// `engine` owns it.
   explicit ArticulatedSolver(ArticulatedEngine& engine) : engine_(engine) {}
-  void compile(const engine::Model&, const engine::State&) override { deferredKnows_ = false; }
+  void compile(const engine::Model& model, const engine::State&) override {
+    stepper_.compile(model);
+    deferredKnows_ = false;
+  }
   void step(engine::Step& step) override;
 
  private:

@@ -101,8 +101,8 @@ IslandSolver::RowRange IslandSolver::addJoint(WorldView& world, Index index) {
   Rows& rows = system_.rows;
   RowRange range{index, rows.size(), 0};
   range.count =
-      writeJointRows(joint, world.step.state.motors[index], world.step.state.coordinates[index], node(a).state,
-                     b == kNone ? nullptr : &node(b).state, constants_, rows.prepare(kMaxJointRows));
+      writeJointRows(joint, world.softness[index], world.step.state.motors[index], world.step.state.coordinates[index],
+                     node(a).state, b == kNone ? nullptr : &node(b).state, constants_, rows.prepare(kMaxJointRows));
   rows.commit(range.count);
   const JointWarmStart& last = world.joints[index];
   for (Index i = range.first; i < range.end(); ++i) {

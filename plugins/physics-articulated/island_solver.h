@@ -14,7 +14,8 @@ struct WorldView {
   engine::Step& step;
   int maxCouplingRows;  ///< islands with more coupling rows are deferred
   const Topology& topology;
-  std::vector<JointWarmStart>& joints;  ///< by joint of the step
+  const std::vector<engine::JointSoftness>& softness;  ///< by joint
+  std::vector<JointWarmStart>& joints;                 ///< by joint of the step
   ContactWarmStart& contacts;
   std::vector<Index>& firstNode;  ///< by tree: its first node in its island
 };

@@ -28,6 +28,7 @@ struct StopContact {
 /// Writes the rows of one joint, from `next` on.
 struct JointWriter {
   const engine::Joint& joint;
+  const engine::JointSoftness& soft;
   const engine::Motors& motors;
   const engine::JointCoordinates& coordinates;
   RigidBodyState& a;
@@ -69,14 +70,14 @@ struct JointWriter {
   // ---- groups of rows ----
 
   /// Anchor relative to b's centre, world axes; zero for the world.
-  Vec3 armOfB() const { return b ? Vec3(b->rotation * joint.anchorB) : Vec3(Vec3::Zero()); }
+  Vec3 armOfB() const { return b ? Vec3(b->rotation * joint.inB.anchor) : Vec3(Vec3::Zero()); }
   /// From a's anchor point to b's.
   Vec3 anchorError(const Vec3& armA, const Vec3& armB) const {
-    return (b ? Vec3(b->position + armB) : joint.anchorB) - a.position - armA;
+    return (b ? Vec3(b->position + armB) : joint.inB.anchor) - a.position - armA;
   }
   /// Three rows that keep the anchor points together.
   void addBall(double erp, double cfm) {
-    const Vec3 armA = fromA(joint.anchorA), armB = armOfB();
+    const Vec3 armA = fromA(joint.inA.anchor), armB = armOfB();
     const Vec3 error = anchorError(armA, armB);
     const double gain = constants.inverseDt * erp;
     for (int i = 0; i < 3; ++i) addPoint(Vec3::Unit(i), armA, armB, gain * error[i], cfm);
@@ -90,7 +91,7 @@ struct JointWriter {
   /// Three rows that keep the relative rotation.
   void addSameRotation() {
     // A small rotation q = (w, v) has the rotation vector 2 v, with the sign of q that makes w positive.
-    const Quaternion q = rotationSince(joint.initialRotationA);
+    const Quaternion q = rotationSince(joint.inA.rotation);
     const Vec3 error = fromA(q.w < 0 ? Vec3(-q.v) : q.v);
     for (int i = 0; i < 3; ++i) addAngular(Vec3::Unit(i), 2 * errorGain() * error[i], constants.cfm);
   }
@@ -113,11 +114,10 @@ struct JointWriter {
 
   /// The force of a motor at a stop. It presses with its full force, or drives away from the stop with a fraction of it
   /// (the fudge factor), which avoids a jump off the stop.
-  static double motorForceAtStop(const JointAxis& axis, const engine::Motor& motor, Stop stop) {
+  static double motorForceAtStop(double fudgeFactor, const engine::Motor& motor, Stop stop) {
     double force = motor.maxForce;
     if (motor.velocity > 0 || (motor.velocity == 0 && stop == Stop::high)) force = -force;
-    if ((stop == Stop::low && motor.velocity > 0) || (stop == Stop::high && motor.velocity < 0))
-      force *= axis.soft.fudgeFactor;
+    if ((stop == Stop::low && motor.velocity > 0) || (stop == Stop::high && motor.velocity < 0)) force *= fudgeFactor;
     return force;
   }
   /// Adds -force along the row to the forces on the bodies.
@@ -146,6 +146,7 @@ struct JointWriter {
   void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
                double velocity, double drift = 0) {
     const JointAxis& axis = joint.axes[index];
+    const engine::JointSoftness::Axis& softAxis = soft.axes[index];
     const engine::Motor& motor = motors[index];
     const Stop stop = contact.stop;
     const bool stopped = stop != Stop::none;
@@ -161,8 +162,9 @@ struct JointWriter {
     }
     // At a stop the motor acts as a given force: the row belongs to the stop. Dry friction does not press.
     const bool friction = motor.velocity == 0 && motor.maxForce == axis.dryFriction;
-    if (powered && stopped && !friction) subtractForce(jacobianA, jacobianB, motorForceAtStop(axis, motor, stop));
-    Row& row = add(jacobianA, jacobianB, motor.velocity, axis.soft.cfm);
+    if (powered && stopped && !friction)
+      subtractForce(jacobianA, jacobianB, motorForceAtStop(softAxis.fudgeFactor, motor, stop));
+    Row& row = add(jacobianA, jacobianB, motor.velocity, softAxis.cfm);
     row.axis = static_cast<std::uint8_t>(index);
     row.stop = stop;
     if (inertia > 0) {
@@ -175,13 +177,13 @@ struct JointWriter {
       return;
     }
     // A stop pushes only away from itself; equal stops push both ways and do not bounce.
-    row.softness = softness(axis.soft.stopCfm);
-    double target = -constants.inverseDt * axis.soft.stopErp * contact.excess;
+    row.softness = softness(softAxis.stopCfm);
+    double target = -constants.inverseDt * softAxis.stopErp * contact.excess;
     if (!locked) {
       (stop == Stop::low ? row.low : row.high) = 0;
-      const double rebound = -axis.soft.bounce * velocity;
-      if (axis.soft.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
-      if (axis.soft.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
+      const double rebound = -softAxis.bounce * velocity;
+      if (softAxis.bounce > 0 && stop == Stop::low && velocity < 0) target = std::max(target, rebound);
+      if (softAxis.bounce > 0 && stop == Stop::high && velocity > 0) target = std::min(target, rebound);
     }
     row.target = target * constants.inverseDt;
   }
@@ -194,7 +196,7 @@ struct JointWriter {
   // ---- joint types ----
 
   void writeBall() {
-    addBall(joint.soft.erp, joint.soft.cfm);
+    addBall(soft.erp, soft.cfm);
     const double damping = joint.axes[0].damping;
     for (int i = 0; damping > 0 && i < 3; ++i) {
       const Vec3 axis = Vec3::Unit(i);
@@ -207,27 +209,27 @@ struct JointWriter {
     addBall(constants.erp, constants.cfm);
     // No rotation about the two directions perpendicular to the axis. The error is the cross product of the axis as
     // fixed in a and as fixed in b.
-    const Vec3 axis = fromA(joint.axisA[0]);
+    const Vec3 axis = fromA(joint.inA.axis[0]);
     Vec3 p, q;
     perpendicularBasis(axis, p, q);
-    const Vec3 error = axis.cross(fromB(joint.axisB[0]));
+    const Vec3 error = axis.cross(fromB(joint.inB.axis[0]));
     addAngular(p, errorGain() * error.dot(p), constants.cfm);
     addAngular(q, errorGain() * error.dot(q), constants.cfm);
     // The angle is needed only for stops.
     StopContact contact;
     if (hasStops(joint.axes[0]))
-      contact = angularStopAt(0, hingeAngle(rotationSince(joint.initialRotationA), joint.axisA[0]));
+      contact = angularStopAt(0, hingeAngle(rotationSince(joint.inA.rotation), joint.inA.axis[0]));
     addAngularAxis(0, axis, contact);
   }
 
   void writeSlider() {
     addSameRotation();
-    Vec3 axis = fromA(joint.axisA[0]), p, q;
+    Vec3 axis = fromA(joint.inA.axis[0]), p, q;
     perpendicularBasis(axis, p, q);
     // Forces act halfway between the centres: both bodies get the same torque, and the pair none.
     const Vec3 arm = b ? Vec3(0.5 * (b->position - a.position)) : Vec3(Vec3::Zero());
     // From a's centre to where it was when set, carried along by b. No component perpendicular to the axis.
-    const Vec3 offset = positionB() + fromB(joint.anchorB) - a.position;
+    const Vec3 offset = positionB() + fromB(joint.inB.anchor) - a.position;
     for (const Vec3& d : {p, q})
       add(SpatialVector::of(d, arm.cross(d)), SpatialVector::of(-d, arm.cross(d)), errorGain() * d.dot(offset),
           constants.cfm);
@@ -250,7 +252,7 @@ struct JointWriter {
   void writeUniversal() {
     addBall(constants.erp, constants.cfm);
     // The axes stay perpendicular: no rotation about axis 1 x axis 2, where the error is the cosine between them.
-    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
+    const Vec3 axis1 = fromA(joint.inA.axis[0]), axis2 = fromB(joint.inB.axis[1]);
     const double cosine = axis1.dot(axis2);
     addAngular(axis1.cross(axis2 - cosine * axis1).normalized(), -errorGain() * cosine, constants.cfm);
     const bool hasStops1 = hasStops(joint.axes[0]), hasStops2 = hasStops(joint.axes[1]);
@@ -260,12 +262,11 @@ struct JointWriter {
       // cross about axis 2 relative to b. Half a turn about the bisector exchanges the two arms of the cross.
       const Quaternion cross = Quaternion::of(orthonormalFrame(axis1, axis2));
       const Quaternion exchange{0, (axis1 + axis2).normalized()};
-      const Quaternion crossInA =
-          a.orientation.conjugate() * cross * Quaternion::of(joint.initialRotationA).conjugate();
+      const Quaternion crossInA = a.orientation.conjugate() * cross * Quaternion::of(joint.inA.rotation).conjugate();
       const Quaternion crossInB = (b ? b->orientation.conjugate() : Quaternion{}) * (exchange * cross) *
-                                  Quaternion::of(joint.initialRotationB).conjugate();
-      if (hasStops1) contact1 = angularStopAt(0, hingeAngle(crossInA, joint.axisA[0]));
-      if (hasStops2) contact2 = angularStopAt(1, -hingeAngle(crossInB, joint.axisB[1]));
+                                  Quaternion::of(joint.inB.rotation).conjugate();
+      if (hasStops1) contact1 = angularStopAt(0, hingeAngle(crossInA, joint.inA.axis[0]));
+      if (hasStops2) contact2 = angularStopAt(1, -hingeAngle(crossInB, joint.inB.axis[1]));
     }
     addAngularAxis(0, axis1, contact1);
     addAngularAxis(1, axis2, contact2);
@@ -273,13 +274,12 @@ struct JointWriter {
 
   void writeHinge2() {
     // The anchor, with the suspension along axis 1.
-    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
-    const Vec3 armA = fromA(joint.anchorA), armB = armOfB();
+    const Vec3 axis1 = fromA(joint.inA.axis[0]), axis2 = fromB(joint.inB.axis[1]);
+    const Vec3 armA = fromA(joint.inA.anchor), armB = armOfB();
     const Vec3 error = anchorError(armA, armB);
     Vec3 p, q;
     perpendicularBasis(axis1, p, q);
-    addPoint(axis1, armA, armB, constants.inverseDt * joint.soft.suspensionErp * axis1.dot(error),
-             joint.soft.suspensionCfm);
+    addPoint(axis1, armA, armB, constants.inverseDt * soft.suspensionErp * axis1.dot(error), soft.suspensionCfm);
     addPoint(p, armA, armB, errorGain() * p.dot(error), constants.cfm);
     addPoint(q, armA, armB, errorGain() * q.dot(error), constants.cfm);
     // The angle between the axes stays as set; the error is the sine of the difference of the two angles.
@@ -290,24 +290,24 @@ struct JointWriter {
     StopContact contact;
     if (hasStops(joint.axes[0])) {
       const Vec3 axis2InA = a.rotation.transpose() * axis2;
-      contact = angularStopAt(0, -portableAtan2(joint.planeA[1].dot(axis2InA), joint.planeA[0].dot(axis2InA)));
+      contact = angularStopAt(0, -portableAtan2(joint.inA.axis[2].dot(axis2InA), joint.inA.axis[1].dot(axis2InA)));
     }
     addAngularAxis(0, axis1, contact);
     addAngularAxis(1, axis2, {});
   }
 
   void writeFixed() {
-    addBall(joint.soft.erp, joint.soft.cfm);
+    addBall(soft.erp, soft.cfm);
     addSameRotation();
   }
 
   /// Angular motor in user mode: axes and angles are the caller's.
   void writeUserMotor() {
-    const auto count = static_cast<Index>(joint.motorAxes);
+    const auto count = static_cast<Index>(joint.motor.axes);
     for (Index i = 0; i < count; ++i) {
-      const Vec3& v = joint.axisA[i];
-      const Vec3 axis = joint.frame[i] == 1 ? fromA(v) : joint.frame[i] == 2 ? fromB(v) : v;
-      addAngularAxis(i, axis, stopAt(joint.axes[i], joint.userAngle[i]));
+      const Vec3 &inA = joint.inA.axis[i], &inB = joint.inB.axis[i];
+      const Vec3 axis = joint.motor.frame[i] == 1 ? fromA(inA) : joint.motor.frame[i] == 2 ? fromB(inB) : inA;
+      addAngularAxis(i, axis, stopAt(joint.axes[i], joint.motor.angle[i]));
     }
   }
 
@@ -317,16 +317,17 @@ struct JointWriter {
     // is the second body.
     const std::size_t ofA = joint.reversed ? 2 : 0, ofB = 2 - ofA;
     std::array<Vec3, 3> axis;
-    axis[ofA] = fromA(joint.axisA[ofA]);
-    axis[ofB] = fromB(joint.axisA[ofB]);
+    axis[ofA] = fromA(joint.inA.axis[ofA]);
+    axis[ofB] = fromB(joint.inB.axis[ofB]);
     axis[1] = axis[2].cross(axis[0]).normalized();
     // Where axes 2 and 0 were when set, carried along by the other body: angles 0 and 2 are counted from there.
-    Vec3 zero2 = fromA(joint.reference1), zero0 = fromB(joint.reference2);
-    if (joint.reversed) std::swap(zero2, zero0);
+    std::array<Vec3, 3> zero;
+    zero[ofA] = fromB(joint.inB.axis[ofA]);
+    zero[ofB] = fromA(joint.inA.axis[ofB]);
     const Vec3 normal = axis[0].cross(axis[1]);
-    const double angles[] = {-portableAtan2(axis[2].dot(axis[0].cross(zero2)), axis[2].dot(zero2)),
+    const double angles[] = {-portableAtan2(axis[2].dot(axis[0].cross(zero[2])), axis[2].dot(zero[2])),
                              -portableAtan2(axis[2].dot(axis[0]), axis[2].dot(normal)),
-                             -portableAtan2(zero0.dot(axis[1]), zero0.dot(axis[1].cross(axis[2])))};
+                             -portableAtan2(zero[0].dot(axis[1]), zero[0].dot(axis[1].cross(axis[2])))};
     // The velocity about direction i depends on the rate of angle i alone: it is perpendicular to the other two axes.
     const Vec3 directions[] = {axis[1].cross(axis[2]), axis[1], normal};
     for (Index i = 0; i < 3; ++i) addAngularAxis(i, directions[i], angularStopAt(i, angles[i]));
@@ -347,17 +348,17 @@ struct JointWriter {
       case JointType::fixed:
         return writeFixed();
       case JointType::angularMotor:
-        return joint.euler ? writeEulerMotor() : writeUserMotor();
+        return joint.motor.euler ? writeEulerMotor() : writeUserMotor();
     }
   }
 };
 
 }  // namespace
 
-Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors,
+Index writeJointRows(const engine::Joint& joint, const engine::JointSoftness& soft, const engine::Motors& motors,
                      const engine::JointCoordinates& coordinates, RigidBodyState& a, RigidBodyState* b,
                      const StepConstants& constants, Row* out) {
-  JointWriter writer{joint, motors, coordinates, a, b, constants, out};
+  JointWriter writer{joint, soft, motors, coordinates, a, b, constants, out};
   writer.write();
   return toIndex(static_cast<std::size_t>(writer.next - out));
 }

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/scene_joint.h"
 #include "index.h"
 #include "rotation.h"
 #include "spatial.h"
@@ -131,7 +132,7 @@ inline constexpr Index kMaxJointRows = 6, kMaxContactRows = 3;
 /// `b` (nullptr: the world) to `out`, which has room for kMaxJointRows. Returns their number. Sets Jacobians, target,
 /// softness, bounds, axis and stop. A motor at a stop has no row of its own: its force is added to `force` and `torque`
 /// of the bodies.
-Index writeJointRows(const engine::Joint& joint, const engine::Motors& motors,
+Index writeJointRows(const engine::Joint& joint, const engine::JointSoftness& soft, const engine::Motors& motors,
                      const engine::JointCoordinates& coordinates, RigidBodyState& a, RigidBodyState* b,
                      const StepConstants& constants, Row* out);
 

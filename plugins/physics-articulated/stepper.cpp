@@ -4,8 +4,8 @@
 
 namespace spark::articulated {
 
-/// Brings what is kept to the present structure of the world.
-void Stepper::build(const engine::Model& model) {
+void Stepper::compile(const engine::Model& model) {
+  engine::readSoftness(model, softness_);
   if (built_ && structure_ == model.structure) return;
   built_ = true;
   structure_ = model.structure;
@@ -42,7 +42,6 @@ bool Stepper::markDeferred() {
 
 std::span<const std::uint8_t> Stepper::step(engine::Step& step, int mostRows, std::size_t threads,
                                             const ParallelFor& parallelFor) {
-  build(step.model);
   islandList_.build(step, topology_);
   const std::size_t n = islandList_.size();
   if (n == 0) return {};
@@ -51,7 +50,7 @@ std::span<const std::uint8_t> Stepper::step(engine::Step& step, int mostRows, st
   deferred_.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
   contacts_.match(step.contacts);
-  WorldView view{step, mostRows, topology_, joints_, contacts_, firstNode_};
+  WorldView view{step, mostRows, topology_, softness_, joints_, contacts_, firstNode_};
   // Each thread takes the next island until none remains.
   std::atomic<std::size_t> next{0};
   const auto work = [&](std::size_t thread) {

@@ -17,7 +17,9 @@ class Stepper {
  public:
   std::uint32_t maxPasses = 30;  ///< see Pivoting; to be set before the first step
 
-  /// Steps the world (see IEngine::step) with up to `threads` threads, at least 1; results do not depend on their
+  /// Brings what is kept to the present model (see ISolver::compile).
+  void compile(const engine::Model& model);
+  /// Steps the world (see ISolver::step) with up to `threads` threads, at least 1; results do not depend on their
   /// number. `parallelFor` may be empty if `threads` is 1. Islands with more than `mostRows` coupling rows, and those
   /// without a solution, are deferred and left unchanged. Returns which bodies are in them (see Step::only); empty:
   /// none. Valid until the next step.
@@ -42,12 +44,12 @@ class Stepper {
   Counts counts() const;
 
  private:
-  void build(const engine::Model& model);
   void reserve(std::size_t threads, int couplingRows);
   bool markDeferred();
   bool built_ = false;           ///< topology is that of `structure_`
   std::uint64_t structure_ = 0;  ///< Model::structure
   Topology topology_;
+  std::vector<engine::JointSoftness> softness_;  ///< by joint
   std::vector<JointWarmStart> joints_;
   ContactWarmStart contacts_;
   std::vector<Index> firstNode_;  ///< see WorldView

@@ -26,6 +26,7 @@ void BulletSolver::compile(const engine::Model& model, const engine::State&) {
     }
     trees_.push_back(std::make_unique<TreeBody>(model, std::move(tree)));
   }
+  engine::readSoftness(model, softness_);
   forces_.compile(model);
   measured_.clear();
   for (const auto& tree : trees_) measured_.push_back(JointForces::measures(model, tree->links()));
@@ -66,7 +67,7 @@ void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
 
 void BulletSolver::write(RowSolver& rows) {
   const engine::Step& step = *step_;
-  const JointRows joints{step, rows};
+  const JointRows joints{step, softness_, rows};
   for (const Index i : islands_.trees(island_)) {
     TreeBody& tree = *trees_[i];
     for (const Dof& dof : tree.dofs()) joints.writeDof(tree, dof);

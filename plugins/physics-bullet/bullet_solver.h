@@ -2,6 +2,7 @@
 /// \file
 /// Steps a world by Bullet.
 
+#include "api/scene_joint.h"
 #include "bullet_detector.h"
 #include "islands.h"
 #include "joint_forces.h"
@@ -48,10 +49,11 @@ class BulletSolver : public engine::ISolver, private RowSource {
   RowSolver rows_;
   Scratch scratch_;
   std::vector<std::unique_ptr<TreeBody>> trees_;
-  std::vector<Index> treeOf_, linkOf_;  ///< by body
-  std::vector<Index> leftOver_;         ///< joints in no tree
-  std::vector<std::uint8_t> measured_;  ///< by tree: a joint's force is wanted
-  bool anyMeasured_ = false;            ///< of the joints in trees and of the others
+  std::vector<Index> treeOf_, linkOf_;           ///< by body
+  std::vector<engine::JointSoftness> softness_;  ///< by joint
+  std::vector<Index> leftOver_;                  ///< joints in no tree
+  std::vector<std::uint8_t> measured_;           ///< by tree: a joint's force is wanted
+  bool anyMeasured_ = false;                     ///< of the joints in trees and of the others
   JointForces forces_;
   Islands islands_;
   // While a step runs.

@@ -20,6 +20,7 @@ struct JointWriter {
   const engine::Step& step;
   RowSolver& out;
   const Joint& joint;
+  const engine::JointSoftness& soft;
   const DynamicState& a;
   const DynamicState& b;
   Row base;  ///< with both sides
@@ -42,11 +43,11 @@ struct JointWriter {
     return r;
   }
   void ball(double erp, double cfm) const {
-    const Vec3 atA = a.position + fromA(joint.anchorA), atB = b.position + fromB(joint.anchorB);
+    const Vec3 atA = a.position + fromA(joint.inA.anchor), atB = b.position + fromB(joint.inB.anchor);
     for (int i = 0; i < 3; ++i) out.addRow(point(Vec3::Unit(i), atA, atB, gain(erp) * (atB - atA)[i], softness(cfm)));
   }
   void sameRotation() const {
-    const auto& q = joint.initialRotationA;
+    const auto& q = joint.inA.rotation;
     const Eigen::Quaterniond initial(q[0], q[1], q[2], q[3]);
     if (initial.norm() == 0) {
       for (int i = 0; i < 3; ++i) out.addRow(angular(Vec3::Unit(i), 0, softness()));
@@ -59,31 +60,31 @@ struct JointWriter {
   }
   void hinge() const {
     ball(step.model.parameters.erp, step.model.parameters.cfm);
-    const Vec3 axis = fromA(joint.axisA[0]), error = axis.cross(fromB(joint.axisB[0]));
+    const Vec3 axis = fromA(joint.inA.axis[0]), error = axis.cross(fromB(joint.inB.axis[0]));
     Vec3 p, q;
     perpendicularBasis(axis, p, q);
     for (const Vec3& d : {p, q}) out.addRow(angular(d, gain() * error.dot(d), softness()));
   }
   void slider() const {
     sameRotation();
-    const Vec3 offset = b.position + fromB(joint.anchorB) - a.position;
+    const Vec3 offset = b.position + fromB(joint.inB.anchor) - a.position;
     Vec3 p, q;
-    perpendicularBasis(fromA(joint.axisA[0]), p, q);
+    perpendicularBasis(fromA(joint.inA.axis[0]), p, q);
     for (const Vec3& d : {p, q}) out.addRow(point(d, a.position, a.position, gain() * d.dot(offset), softness()));
   }
   void universal() const {
     ball(step.model.parameters.erp, step.model.parameters.cfm);
-    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
+    const Vec3 axis1 = fromA(joint.inA.axis[0]), axis2 = fromB(joint.inB.axis[1]);
     const double cosine = axis1.dot(axis2);
     out.addRow(angular(axis1.cross(axis2 - cosine * axis1).normalized(), -gain() * cosine, softness()));
   }
   void hinge2() const {
-    const Vec3 axis1 = fromA(joint.axisA[0]), axis2 = fromB(joint.axisB[1]);
-    const Vec3 atA = a.position + fromA(joint.anchorA), atB = b.position + fromB(joint.anchorB), error = atB - atA;
+    const Vec3 axis1 = fromA(joint.inA.axis[0]), axis2 = fromB(joint.inB.axis[1]);
+    const Vec3 atA = a.position + fromA(joint.inA.anchor), atB = b.position + fromB(joint.inB.anchor),
+               error = atB - atA;
     Vec3 p, q;
     perpendicularBasis(axis1, p, q);
-    out.addRow(
-        point(axis1, atA, atB, gain(joint.soft.suspensionErp) * axis1.dot(error), softness(joint.soft.suspensionCfm)));
+    out.addRow(point(axis1, atA, atB, gain(soft.suspensionErp) * axis1.dot(error), softness(soft.suspensionCfm)));
     for (const Vec3& d : {p, q}) out.addRow(point(d, atA, atB, gain() * d.dot(error), softness()));
     const Vec3 normal = axis1.cross(axis2);
     const double sine = normal.norm(), cosine = axis1.dot(axis2);
@@ -101,8 +102,8 @@ std::array<Vec3, 3> eulerDirections(const Joint& j, const DynamicState& a, const
   // Axis 0 is fixed in the first body, axis 2 in the second. In a reversed joint, a is the second body.
   const std::size_t ofA = j.reversed ? 2 : 0, ofB = 2 - ofA;
   std::array<Vec3, 3> axis;
-  axis[ofA] = a.rotation * j.axisA[ofA];
-  axis[ofB] = b.rotation * j.axisA[ofB];
+  axis[ofA] = a.rotation * j.inA.axis[ofA];
+  axis[ofB] = b.rotation * j.inB.axis[ofB];
   axis[1] = axis[2].cross(axis[0]).normalized();
   return {axis[1].cross(axis[2]), axis[1], axis[0].cross(axis[1])};
 }
@@ -111,6 +112,7 @@ std::array<Vec3, 3> eulerDirections(const Joint& j, const DynamicState& a, const
 
 void JointRows::writeAxis(Index joint, int index, Row row, double position, double rate) const {
   const JointAxis& axis = step.model.joints[joint].axes[static_cast<std::size_t>(index)];
+  const engine::JointSoftness::Axis& soft = softness[joint].axes[static_cast<std::size_t>(index)];
   const engine::Motor& motor = step.state.motors[joint][static_cast<std::size_t>(index)];
   const double dt = step.dt;
   // Axis 2 of a wheel has no stops.
@@ -127,14 +129,14 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
   if (motor.maxForce > 0 && !locked) {
     Row drive = row;
     drive.target = motor.velocity;
-    drive.softness = axis.soft.cfm / dt;
+    drive.softness = soft.cfm / dt;
     drive.low = -motor.maxForce * dt, drive.high = motor.maxForce * dt;
     out.addRow(drive);
   }
   if (!stops) return;
-  row.softness = axis.soft.stopCfm / dt;
+  row.softness = soft.stopCfm / dt;
   if (locked) {
-    row.target = axis.soft.stopErp * (axis.lowStop - position) / dt;
+    row.target = soft.stopErp * (axis.lowStop - position) / dt;
     out.addRow(row);
     return;
   }
@@ -143,10 +145,10 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
     const double excess = sign * (at - position);  // above 0: beyond the stop
     if (excess < -kReach - 2 * std::abs(rate) * dt) return;
     Row r = row;
-    r.target = sign * (excess > 0 ? axis.soft.stopErp : 1.0) * excess / dt;
+    r.target = sign * (excess > 0 ? soft.stopErp : 1.0) * excess / dt;
     const double approach = -sign * rate;
-    if (axis.soft.bounce > 0 && approach > 0 && excess + approach * dt > 0)
-      r.target = sign * std::max(sign * r.target, axis.soft.bounce * approach);
+    if (soft.bounce > 0 && approach > 0 && excess + approach * dt > 0)
+      r.target = sign * std::max(sign * r.target, soft.bounce * approach);
     (sign > 0 ? r.low : r.high) = 0;
     out.addRow(r);
   };
@@ -155,14 +157,14 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
 }
 
 void JointRows::writeDof(TreeBody& tree, const Dof& dof) const {
-  const Joint& j = step.model.joints[dof.joint];
+  const engine::JointSoftness& soft = softness[dof.joint];
   Row row;
   row.a = {&tree.multiBody(), dof.link};
   row.offset = tree.offsetOf(dof);
   if (dof.axis < 0) {
     // The suspension of a wheel is a row of ERP and CFM.
-    row.target = -j.soft.suspensionErp / step.dt * dof.position;
-    row.softness = j.soft.suspensionCfm / step.dt;
+    row.target = -soft.suspensionErp / step.dt * dof.position;
+    row.softness = soft.suspensionCfm / step.dt;
     out.addRow(row);
     return;
   }
@@ -183,49 +185,50 @@ void JointRows::writeBallDamping(Index joint, const Side& a, const Side& b) cons
 void JointRows::writeJoint(Index index, const Side& sideA, const Side& sideB) const {
   const Joint& j = step.model.joints[index];
   const DynamicState &a = stateOf(step.state, j.a), &b = stateOf(step.state, j.b);
-  const JointWriter w{step, out, j, a, b, {.a = sideA, .b = sideB}};
+  const engine::JointSoftness& soft = softness[index];
+  const JointWriter w{step, out, j, soft, a, b, {.a = sideA, .b = sideB}};
   const auto turning = [&](int axis, const Vec3& direction, double position) {
     writeAxis(index, axis, w.angular(direction, 0, 0), position, direction.dot(a.angularVelocity - b.angularVelocity));
   };
   const auto coordinate = [&](std::size_t axis) { return step.state.coordinates[index].at(axis); };
   switch (j.type) {
     case JointType::ball:
-      w.ball(j.soft.erp, j.soft.cfm);
+      w.ball(soft.erp, soft.cfm);
       writeBallDamping(index, sideA, sideB);
       break;
     case JointType::hinge:
       w.hinge();
-      turning(0, w.fromA(j.axisA[0]), coordinate(0));
+      turning(0, w.fromA(j.inA.axis[0]), coordinate(0));
       break;
     case JointType::slider: {
       w.slider();
-      const Vec3 axis = (j.reversed ? -1 : 1) * w.fromA(j.axisA[0]);
-      const Vec3 offset = b.position + w.fromB(j.anchorB) - a.position;
+      const Vec3 axis = (j.reversed ? -1 : 1) * w.fromA(j.inA.axis[0]);
+      const Vec3 offset = b.position + w.fromB(j.inB.anchor) - a.position;
       const Vec3 relative = a.linearVelocity - b.linearVelocity - b.angularVelocity.cross(a.position - b.position);
       writeAxis(index, 0, w.point(axis, a.position, a.position, 0, 0), -axis.dot(offset), axis.dot(relative));
       break;
     }
     case JointType::universal:
       w.universal();
-      turning(0, w.fromA(j.axisA[0]), coordinate(0));
-      turning(1, w.fromB(j.axisB[1]), coordinate(1));
+      turning(0, w.fromA(j.inA.axis[0]), coordinate(0));
+      turning(1, w.fromB(j.inB.axis[1]), coordinate(1));
       break;
     case JointType::hinge2:
       w.hinge2();
-      turning(0, w.fromA(j.axisA[0]), coordinate(0));
-      turning(1, w.fromB(j.axisB[1]), 0);
+      turning(0, w.fromA(j.inA.axis[0]), coordinate(0));
+      turning(1, w.fromB(j.inB.axis[1]), 0);
       break;
     case JointType::fixed:
-      w.ball(j.soft.erp, j.soft.cfm);
+      w.ball(soft.erp, soft.cfm);
       w.sameRotation();
       break;
     case JointType::angularMotor: {
-      const auto euler = j.euler ? eulerDirections(j, a, b) : std::array<Vec3, 3>{};
-      for (int i = 0; i < (j.euler ? 3 : j.motorAxes); ++i) {
+      const auto euler = j.motor.euler ? eulerDirections(j, a, b) : std::array<Vec3, 3>{};
+      for (int i = 0; i < (j.motor.euler ? 3 : j.motor.axes); ++i) {
         const auto k = static_cast<std::size_t>(i);
-        const Vec3& v = j.axisA[k];
-        const Vec3 user = j.frame[k] == 1 ? w.fromA(v) : j.frame[k] == 2 ? w.fromB(v) : v;
-        turning(i, j.euler ? euler[k] : user, j.euler ? coordinate(k) : j.userAngle[k]);
+        const Vec3 &inA = j.inA.axis[k], &inB = j.inB.axis[k];
+        const Vec3 user = j.motor.frame[k] == 1 ? w.fromA(inA) : j.motor.frame[k] == 2 ? w.fromB(inB) : inA;
+        turning(i, j.motor.euler ? euler[k] : user, j.motor.euler ? coordinate(k) : j.motor.angle[k]);
       }
       break;
     }

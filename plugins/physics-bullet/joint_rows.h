@@ -3,6 +3,7 @@
 /// Rows of joints: motors and stops of all, and the constraints of those that are in no tree.
 
 #include "api/engine.h"
+#include "api/scene_joint.h"
 #include "row_solver.h"
 
 namespace spark::bullet {
@@ -10,6 +11,7 @@ namespace spark::bullet {
 /// Rows of one joint, or of one degree of freedom.
 struct JointRows {
   const engine::Step& step;
+  const std::vector<engine::JointSoftness>& softness;  ///< by joint
   RowSolver& out;
 
   /// Motor, stops, damping and armature of a degree of freedom of a tree.

@@ -119,7 +119,7 @@ void TreeBody::addLink(const Model& model, Index index, int& next) {
   const btVector3 moments = toBullet(place.moments), none(0, 0, 0);
   // Where the joint is, in the child, and from the parent's centre.
   const bool central = j.type == JointType::slider || j.type == JointType::fixed;
-  const Vec3 pivot = central ? Vec3(Vec3::Zero()) : link.childIsA ? j.anchorA : j.anchorB;
+  const Vec3 pivot = central ? Vec3(Vec3::Zero()) : link.childIsA ? j.inA.anchor : j.inB.anchor;
   const btVector3 toPivot = toBullet(parentAxes.conjugate() * (link.zero.position + link.zero.rotation * pivot));
   const btVector3 toCentre = toBullet(place.axes.conjugate() * Vec3(-pivot));
   const Eigen::Quaterniond zero(link.zero.rotation);
@@ -142,7 +142,7 @@ void TreeBody::addLink(const Model& model, Index index, int& next) {
   for (std::size_t k = 0; k < chain.size(); ++k) {
     const Step& s = chain[k];
     const bool first = k == 0, last = k + 1 == chain.size();
-    const Vec3 own = s.inA ? j.axisA[0] : j.axisB[1];
+    const Vec3 own = s.inA ? j.inA.axis[0] : j.inB.axis[1];
     const Vec3 inChild = s.inA == link.childIsA ? own : Vec3(link.zero.rotation.transpose() * own);
     const Vec3 direction = sign * inChild;
     const btVector3 axis = toBullet(place.axes.conjugate() * direction);
@@ -214,8 +214,8 @@ void TreeBody::takeDof(Dof& dof, const Model& model, const State& state, const L
   const bool slider = j.type == JointType::slider;
   const double sign = slider && j.reversed ? -1 : 1;
   const DynamicState &a = link.childIsA ? child : parent, &b = link.childIsA ? parent : child;
-  const Vec3 axis = sign * (a.rotation * j.axisA[0]);
-  const Vec3 armA = slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.anchorA), armB = b.rotation * j.anchorB;
+  const Vec3 axis = sign * (a.rotation * j.inA.axis[0]);
+  const Vec3 armA = slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.inA.anchor), armB = b.rotation * j.inB.anchor;
   const Vec3 apart = a.position + armA - b.position - armB;
   const Vec3 velocity =
       a.linearVelocity + a.angularVelocity.cross(armA) - b.linearVelocity - b.angularVelocity.cross(armB);

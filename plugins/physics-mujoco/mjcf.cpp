@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "api/scene_joint.h"
+
 namespace spark::mujoco {
 
 using engine::Geom;
@@ -33,7 +35,7 @@ Trees::Trees(const Model& model, const engine::State& state) {
     link.zero = compose(inverse(above), poseOf(state, link.body));
     if (!j) continue;
     const Mat3 r = compose(inverse(poseOf(state, j->a)), poseOf(state, j->b)).rotation;
-    const Pose b{j->anchorA - r * j->anchorB, r};
+    const Pose b{j->inA.anchor - r * j->inB.anchor, r};
     link.zero = link.childIsA ? inverse(b) : b;
   }
   mergeConnectors(model);
@@ -185,7 +187,7 @@ struct Writer {
     // In the frame of the body that has the joint.
     const Pose frame = inverse(link.carrierInLink);
     const Index body = link.carrier == kNone ? link.body : trees.links[link.carrier].body;
-    const Vec3 anchor = link.childIsA ? j.anchorA : j.anchorB;
+    const Vec3 anchor = link.childIsA ? j.inA.anchor : j.inB.anchor;
     const Vec3 at = frame.position + frame.rotation * anchor - model.bodies[body].linkOrigin;
     const Mat3 parentInChild = link.zero.rotation.transpose();
     // Axis 1 is fixed in a, axis 2 in b; each in the child's frame, at zero.
@@ -205,11 +207,11 @@ struct Writer {
     };
     switch (j.type) {
       case JointType::hinge:
-        axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+        axial(0, "hinge", inChild(j.inA.axis[0], true), &j.axes[0]);
         put("/>\n");
         break;
       case JointType::slider:
-        axial(0, "slide", (j.reversed ? -1 : 1) * inChild(j.axisA[0], true), &j.axes[0]);
+        axial(0, "slide", (j.reversed ? -1 : 1) * inChild(j.inA.axis[0], true), &j.axes[0]);
         put("/>\n");
         break;
       case JointType::ball:
@@ -219,29 +221,30 @@ struct Writer {
       case JointType::universal:
         // The first joint of a body is the one next to the parent.
         if (link.childIsA) {
-          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[1]);
+          axial(1, "hinge", inChild(j.inB.axis[1], false), &j.axes[1]);
           put("/>\n");
-          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+          axial(0, "hinge", inChild(j.inA.axis[0], true), &j.axes[0]);
         } else {
-          axial(0, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+          axial(0, "hinge", inChild(j.inA.axis[0], true), &j.axes[0]);
           put("/>\n");
-          axial(1, "hinge", inChild(j.axisB[1], false), &j.axes[1]);
+          axial(1, "hinge", inChild(j.inB.axis[1], false), &j.axes[1]);
         }
         put("/>\n");
         break;
       case JointType::hinge2: {
         // A spring along axis 1, as ODE's ERP and CFM mean one (ODE manual, "Soft constraint and CFM").
         const auto suspension = [&] {
-          const double dt = step, erp = j.soft.suspensionErp, cfm = std::max(j.soft.suspensionCfm, 1e-7);
-          axial(0, "slide", inChild(j.axisA[0], true), nullptr);
+          const auto soft = model.extensions.sceneJoints[link.joint].get<engine::JointSoftness>();
+          const double dt = step, erp = soft.suspensionErp, cfm = std::max(soft.suspensionCfm, 1e-7);
+          axial(0, "slide", inChild(j.inA.axis[0], true), nullptr);
           put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
         };
         const auto steering = [&] {
-          axial(1, "hinge", inChild(j.axisA[0], true), &j.axes[0]);
+          axial(1, "hinge", inChild(j.inA.axis[0], true), &j.axes[0]);
           put("/>\n");
         };
         const auto rolling = [&] {
-          axial(2, "hinge", inChild(j.axisB[1], false), &j.axes[1], false);
+          axial(2, "hinge", inChild(j.inB.axis[1], false), &j.axes[1], false);
           put("/>\n");
         };
         if (link.childIsA)

@@ -228,9 +228,9 @@ void MujocoWorld::takeLink(const Model& model, const State& state, Index index) 
         const Joint& j = model.joints[link.joint];
         const double sign = j.type == JointType::slider && j.reversed ? -1 : 1;
         const DynamicState &a = link.childIsA ? child : parent, &b = link.childIsA ? parent : child;
-        const Vec3 axis = a.rotation * j.axisA[0];
-        const Vec3 armA = j.type == JointType::slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.anchorA);
-        const Vec3 armB = b.rotation * j.anchorB;
+        const Vec3 axis = a.rotation * j.inA.axis[0];
+        const Vec3 armA = j.type == JointType::slider ? Vec3(Vec3::Zero()) : Vec3(a.rotation * j.inA.anchor);
+        const Vec3 armB = b.rotation * j.inB.anchor;
         q[0] = sign * axis.dot(a.position + armA - b.position - armB);
         v[0] = sign * axis.dot(a.linearVelocity + a.angularVelocity.cross(armA) - b.linearVelocity -
                                b.angularVelocity.cross(armB));
@@ -282,7 +282,7 @@ void MujocoWorld::giveConnector(const Model& model, State& state, Index index) {
     s.linearVelocity =
         parent.linearVelocity + parent.angularVelocity.cross(s.position - parent.position) + rate * along;
   } else {
-    const Vec3 anchor = zero.position + zero.rotation * (link.childIsA ? j.anchorA : j.anchorB);
+    const Vec3 anchor = zero.position + zero.rotation * (link.childIsA ? j.inA.anchor : j.inB.anchor);
     const Mat3 turn = Eigen::AngleAxisd(q, along).toRotationMatrix();
     s.rotation = turn * zero.rotation;
     s.position = anchor + turn * (zero.position - anchor);

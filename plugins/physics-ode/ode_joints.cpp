@@ -1,17 +1,19 @@
 #include <algorithm>
 #include <limits>
 
+#include "api/joint_trees.h"
 #include "ode_world.h"
 
 // ODE takes anchors and axes in world coordinates, at the poses that the bodies have at that time, and gives no access
-// to what it computes from them. So a joint is set by repeating the calls that set it in the model (Joint::assembly),
-// with its bodies put where they were.
+// to what it computes from them. So a joint is set by calls that give it the frames of the model, with its bodies put
+// where its coordinates are 0; in exact replay by repeating the calls of the scene (engine::JointCall), with its bodies
+// put where they were.
 
 namespace spark::ode {
 
-using engine::Assembly;
 using engine::Index;
 using engine::JointAxis;
+using engine::JointCall;
 using engine::JointType;
 using engine::kNone;
 using engine::Model;
@@ -73,24 +75,25 @@ void passStops(JointData& j, const engine::Joint& from, int axis, std::int32_t t
   pass(j, dParamHiStop + dParamGroup * axis, turns == 0 ? a.highStop : a.highStop - turned, j.axes[axis].highStop);
 }
 
-void passParameters(JointData& j, const engine::Joint& from, const engine::JointCoordinates& coordinates) {
+void passParameters(JointData& j, const engine::Joint& from, const engine::JointSoftness& soft,
+                    const engine::JointCoordinates& coordinates) {
   for (int axis = 0; axis < engine::axesOf(j.type); ++axis) {
-    const JointAxis& a = from.axes[axis];
-    JointAxis& known = j.axes[axis];
+    const engine::JointSoftness::Axis& a = soft.axes[axis];
+    engine::JointSoftness::Axis& known = j.soft.axes[axis];
     const int group = dParamGroup * axis;
     passStops(j, from, axis, coordinates.turns[axis]);
-    pass(j, dParamFudgeFactor + group, a.soft.fudgeFactor, known.soft.fudgeFactor);
-    pass(j, dParamBounce + group, a.soft.bounce, known.soft.bounce);
-    pass(j, dParamCFM + group, a.soft.cfm, known.soft.cfm);
-    pass(j, dParamStopERP + group, a.soft.stopErp, known.soft.stopErp);
-    pass(j, dParamStopCFM + group, a.soft.stopCfm, known.soft.stopCfm);
+    pass(j, dParamFudgeFactor + group, a.fudgeFactor, known.fudgeFactor);
+    pass(j, dParamBounce + group, a.bounce, known.bounce);
+    pass(j, dParamCFM + group, a.cfm, known.cfm);
+    pass(j, dParamStopERP + group, a.stopErp, known.stopErp);
+    pass(j, dParamStopCFM + group, a.stopCfm, known.stopCfm);
   }
   if (j.type == JointType::ball || j.type == JointType::fixed) {
-    pass(j, dParamERP, from.soft.erp, j.soft.erp);
-    pass(j, dParamCFM, from.soft.cfm, j.soft.cfm);
+    pass(j, dParamERP, soft.erp, j.soft.erp);
+    pass(j, dParamCFM, soft.cfm, j.soft.cfm);
   } else if (j.type == JointType::hinge2) {
-    pass(j, dParamSuspensionERP, from.soft.suspensionErp, j.soft.suspensionErp);
-    pass(j, dParamSuspensionCFM, from.soft.suspensionCfm, j.soft.suspensionCfm);
+    pass(j, dParamSuspensionERP, soft.suspensionErp, j.soft.suspensionErp);
+    pass(j, dParamSuspensionCFM, soft.suspensionCfm, j.soft.suspensionCfm);
   }
   if (j.wantsFeedback != from.wantsFeedback) {
     j.wantsFeedback = from.wantsFeedback;
@@ -100,13 +103,13 @@ void passParameters(JointData& j, const engine::Joint& from, const engine::Joint
 }
 
 /// Puts a body where it was when a joint was set.
-void put(const WorldData& w, Index body, const engine::AssemblyPose& pose) {
+void put(const WorldData& w, Index body, const JointCall::Place& place) {
   if (body == kNone) return;
   const BodyData& b = w.bodies[body];
-  std::copy_n(pose.position.data(), 3, b.position);
-  std::copy_n(pose.quaternion.data(), 4, b.quaternion);
-  for (int row = 0; row < 3; ++row)
-    for (int column = 0; column < 3; ++column) b.rotation[4 * row + column] = pose.rotation(row, column);
+  std::copy(place.position.begin(), place.position.end(), b.position);
+  std::copy(place.quaternion.begin(), place.quaternion.end(), b.quaternion);
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < 3; ++column) b.rotation[4 * row + column] = place.rotation[3 * column + row];
 }
 
 void setAnchor(const JointData& j, const Vec3& p) {
@@ -139,40 +142,104 @@ void setAxis(const JointData& j, int axis, const Vec3& v, int frame) {
   }
 }
 
-/// Repeats the calls that set a joint. The bodies' poses in ODE are those of the last call afterwards.
-void assemble(const WorldData& w, const JointData& j, const engine::Joint& from) {
+/// The calls that give a joint the frames of the model: with b, or the world, in the origin and the coordinates at 0.
+std::vector<JointCall> callsOf(const engine::Joint& from) {
+  const Pose a = inverse(engine::zeroPose(from));
+  const Eigen::Quaterniond q(a.rotation);
+  JointCall base;
+  std::copy_n(a.position.data(), 3, base.a.position.begin());
+  base.a.quaternion = {q.w(), q.x(), q.y(), q.z()};
+  std::copy_n(a.rotation.data(), 9, base.a.rotation.begin());
+  std::vector<JointCall> calls;
+  const auto add = [&](JointCall::Kind kind, int axis, const Vec3& world, int frame = 0) {
+    JointCall& call = calls.emplace_back(base);
+    call.kind = kind, call.axis = axis, call.frame = frame;
+    std::copy_n(world.data(), 3, call.world.begin());
+  };
+  // The axis that is `inA` in a, or `inB` in b.
+  const auto addAxis = [&](int axis, bool ofA, const Vec3& inA, const Vec3& inB, int frame = 0) {
+    const Vec3 world = ofA ? Vec3(a.rotation * inA) : inB;
+    if (!world.isZero(0)) add(JointCall::setAxis, axis, world, frame);
+  };
+  switch (from.type) {
+    case JointType::fixed:
+      // One that was never set drifts.
+      if (from.inA.rotation != std::array<double, 4>{}) add(JointCall::setFixed, 0, Vec3::Zero());
+      break;
+    case JointType::angularMotor: {
+      const engine::AngularMotor& m = from.motor;
+      add(JointCall::setMotor, m.axes, Vec3::Zero(), m.euler);
+      for (int axis = 0; axis < m.axes; ++axis) {
+        // ODE counts bodies as they were attached.
+        const std::size_t i = static_cast<std::size_t>(axis);
+        const bool ofA = m.euler ? axis == (from.reversed ? 2 : 0) : m.frame[i] == 1;
+        addAxis(axis, ofA, from.inA.axis[i], from.inB.axis[i],
+                from.reversed && m.frame[i] != 0 ? 3 - m.frame[i] : m.frame[i]);
+        if (!m.euler) add(JointCall::setAngle, axis, Vec3(m.angle[i], 0, 0));
+      }
+      break;
+    }
+    case JointType::slider:
+      addAxis(0, true, from.inA.axis[0], from.inB.axis[0]);
+      break;
+    case JointType::hinge:
+      add(JointCall::anchor, 0, from.inB.anchor);
+      addAxis(0, true, from.inA.axis[0], from.inB.axis[0]);
+      break;
+    case JointType::ball:
+      add(JointCall::anchor, 0, from.inB.anchor);
+      break;
+    default:
+      add(JointCall::anchor, 0, from.inB.anchor);
+      // Axis 0 is that of the first attached body.
+      for (const int axis : {0, 1}) addAxis(axis, (axis == 0) != from.reversed, from.inA.axis[0], from.inB.axis[1]);
+  }
+  return calls;
+}
+
+/// The calls that set a joint; none if it was never set.
+std::vector<JointCall> callsFor(const Model& model, Index joint) {
+  if (model.exactReplay) return model.extensions.sceneJoints[joint].all<JointCall>(JointCall::kNumbers);
+  const engine::Joint& from = model.joints[joint];
+  return from.setAt == 0 || from.a == kNone ? std::vector<JointCall>{} : callsOf(from);
+}
+
+/// Makes the calls that set a joint. The bodies' poses in ODE are those of the last call afterwards.
+void assemble(const WorldData& w, const JointData& j, const engine::Joint& from, std::vector<JointCall> calls) {
+  std::stable_partition(calls.begin(), calls.end(), [](const JointCall& c) { return c.kind == JointCall::setMotor; });
+  const auto toVec = [](const std::array<double, 3>& v) { return Vec3(v[0], v[1], v[2]); };
   // A wheel's axes are set as a pair: ODE ends the process for parallel ones.
   if (j.type == JointType::hinge2) {
-    const Assembly* calls[2] = {};
-    for (const Assembly& call : from.assembly)
-      if (call.kind == Assembly::Kind::axis) calls[call.axis] = &call;
-    if (calls[0] && calls[1]) {
-      const dReal first[4] = {calls[0]->world.x(), calls[0]->world.y(), calls[0]->world.z(), 0};
-      const dReal second[4] = {calls[1]->world.x(), calls[1]->world.y(), calls[1]->world.z(), 0};
-      put(w, from.a, calls[0]->a), put(w, from.b, calls[0]->b);
+    const JointCall* axes[2] = {};
+    for (const JointCall& call : calls)
+      if (call.kind == JointCall::setAxis) axes[call.axis] = &call;
+    if (axes[0] && axes[1]) {
+      const dReal first[4] = {axes[0]->world[0], axes[0]->world[1], axes[0]->world[2], 0};
+      const dReal second[4] = {axes[1]->world[0], axes[1]->world[1], axes[1]->world[2], 0};
+      put(w, from.a, axes[0]->a), put(w, from.b, axes[0]->b);
       dJointSetHinge2Axes(j.joint, first, second);
     }
   }
-  for (const Assembly& call : from.assembly) {
+  for (const JointCall& call : calls) {
     put(w, from.a, call.a);
     put(w, from.b, call.b);
+    const int axis = static_cast<int>(call.axis), frame = static_cast<int>(call.frame);
     switch (call.kind) {
-      case Assembly::Kind::anchor:
-        setAnchor(j, call.world);
+      case JointCall::anchor:
+        setAnchor(j, toVec(call.world));
         break;
-      case Assembly::Kind::axis:
-        setAxis(j, call.axis, call.world, call.frame);
+      case JointCall::setAxis:
+        setAxis(j, axis, toVec(call.world), frame);
         break;
-      case Assembly::Kind::motor:
-        dJointSetAMotorMode(j.joint, call.frame ? dAMotorEuler : dAMotorUser);
-        if (!call.frame) dJointSetAMotorNumAxes(j.joint, call.axis);
+      case JointCall::setMotor:
+        dJointSetAMotorMode(j.joint, frame ? dAMotorEuler : dAMotorUser);
+        if (!frame) dJointSetAMotorNumAxes(j.joint, axis);
         break;
-      case Assembly::Kind::angle:
-        dJointSetAMotorAngle(j.joint, call.axis, call.world.x());
+      case JointCall::setAngle:
+        dJointSetAMotorAngle(j.joint, axis, call.world[0]);
         break;
-      case Assembly::Kind::fixed:
+      default:
         dJointSetFixed(j.joint);
-        break;
     }
   }
 }
@@ -188,11 +255,9 @@ void compileJoints(WorldData& w, const Model& model, const engine::State& state)
     j->joint = createJoint(w.id, from.type);
     // All parameters are passed once.
     constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    for (JointAxis& a : j->axes) {
-      a.lowStop = a.highStop = kUnknown;
-      a.soft = {kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
-    }
-    j->soft = {kUnknown, kUnknown, kUnknown, kUnknown};
+    for (JointAxis& a : j->axes) a.lowStop = a.highStop = kUnknown;
+    j->soft = {{}, kUnknown, kUnknown, kUnknown, kUnknown};
+    j->soft.axes.fill({kUnknown, kUnknown, kUnknown, kUnknown, kUnknown});
     w.joints.push_back(std::move(j));
     w.motors.emplace_back();
   }
@@ -207,22 +272,22 @@ void compileJoints(WorldData& w, const Model& model, const engine::State& state)
     const engine::Joint& from = model.joints[i];
     const dBodyID a = from.a != kNone ? w.bodies[from.a].body : nullptr;
     const dBodyID b = from.b != kNone ? w.bodies[from.b].body : nullptr;
-    if (!from.assembly.empty()) put(w, from.a, from.assembly.front().a), put(w, from.b, from.assembly.front().b);
+    if (const auto calls = callsFor(model, i); !calls.empty()) put(w, from.a, calls[0].a), put(w, from.b, calls[0].b);
     from.reversed ? dJointAttach(w.joints[i]->joint, nullptr, a) : dJointAttach(w.joints[i]->joint, a, b);
     w.joints[i]->attachedAt = from.attachedAt;
-    w.joints[i]->assembledAt = 0;
+    w.joints[i]->setAt = 0;
   }
   w.links.clear();
   w.measured.clear();
   for (Index i = 0; i < w.joints.size(); ++i) {
     JointData& j = *w.joints[i];
     const engine::Joint& from = model.joints[i];
-    passParameters(j, from, state.coordinates[i]);
+    passParameters(j, from, model.extensions.sceneJoints[i].get<engine::JointSoftness>(), state.coordinates[i]);
     if (from.wantsFeedback) w.measured.push_back(i);
     if (from.b != kNone) w.links.push_back({from.a, from.b});
-    if (j.assembledAt == from.assembledAt || from.a == kNone) continue;
-    assemble(w, j, from);
-    j.assembledAt = from.assembledAt;
+    if (j.setAt == from.setAt || from.a == kNone) continue;
+    assemble(w, j, from, callsFor(model, i));
+    j.setAt = from.setAt;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/scene_joint.h"
 #include "ode_numbers.h"
 #include "ode_process.h"
 #include "ode_threads.h"
@@ -37,9 +38,9 @@ struct JointData {
   std::uint64_t id = 0;  ///< as in the model
   dJointID joint = nullptr;
   engine::JointType type = engine::JointType::hinge;
-  std::uint64_t attachedAt = 0, assembledAt = 0;  ///< as in the model
-  std::array<engine::JointAxis, 3> axes;          ///< as passed to ODE
-  engine::Joint::Softness soft;                   ///< as passed to ODE
+  std::uint64_t attachedAt = 0, setAt = 0;  ///< as in the model
+  std::array<engine::JointAxis, 3> axes;    ///< as passed to ODE
+  engine::JointSoftness soft;               ///< as passed to ODE
   dJointFeedback feedback{};
   bool wantsFeedback = false;
 };

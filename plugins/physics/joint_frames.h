@@ -2,7 +2,7 @@
 /// \file
 /// Directions, points and rotations between the frame of a joint's body and the world frame; nullptr: the world.
 
-#include "api/model.h"
+#include "api/state.h"
 #include "rotations.h"
 
 namespace spark::physics {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <optional>
 
-#include "api/model.h"
+#include "api/state.h"
 
 namespace spark::physics {
 

@@ -21,15 +21,17 @@ using engine::kNone;
 
 namespace {
 
-/// A parameter of an axis, in the order of JointParameter. `J` and `M` are const, or both are not.
-template <class J, class M>
-auto* parameterOf(J& j, M& motors, JointParameter p, int axis) {
+bool isSoft(JointParameter p) { return p >= JointParameter::fudgeFactor && p <= JointParameter::suspensionCfm; }
+
+/// A parameter of an axis, in the order of JointParameter. The first three are const, or none is.
+template <class J, class S, class M>
+auto* parameterOf(J& j, S& soft, M& motors, JointParameter p, int axis) {
   auto& a = j.axes[axis];
+  auto& s = soft.axes[axis];
   auto& m = motors[axis];
-  decltype(&a.lowStop) const all[] = {
-      &a.lowStop,  &a.highStop,     &m.velocity,     &m.maxForce,           &a.soft.fudgeFactor,   &a.soft.bounce,
-      &a.soft.cfm, &a.soft.stopErp, &a.soft.stopCfm, &j.soft.suspensionErp, &j.soft.suspensionCfm, &a.armature,
-      &a.damping,  &a.dryFriction};
+  decltype(&a.lowStop) const all[] = {&a.lowStop,          &a.highStop, &m.velocity, &m.maxForce,   &s.fudgeFactor,
+                                      &s.bounce,           &s.cfm,      &s.stopErp,  &s.stopCfm,    &soft.suspensionErp,
+                                      &soft.suspensionCfm, &a.armature, &a.damping,  &a.dryFriction};
   return all[static_cast<int>(p)];
 }
 
@@ -48,8 +50,8 @@ bool hasParameter(const Joint& j, JointParameter p, int axis) {
 std::array<Vec3, 3> WorldModel::eulerAxes(const Joint& j) const {
   const std::size_t ofA = j.reversed ? 2 : 0, ofB = 2 - ofA;
   std::array<Vec3, 3> axes;
-  axes[ofA] = toWorld(stateAt(j.a), j.axisA[ofA]);
-  axes[ofB] = toWorld(stateAt(j.b), j.axisA[ofB]);
+  axes[ofA] = toWorld(stateAt(j.a), j.inA.axis[ofA]);
+  axes[ofB] = toWorld(stateAt(j.b), j.inB.axis[ofB]);
   axes[1] = axes[2].cross(axes[0]).normalized();
   return axes;
 }
@@ -57,16 +59,16 @@ std::array<Vec3, 3> WorldModel::eulerAxes(const Joint& j) const {
 Vec3 WorldModel::worldAxis(const Joint& j, int axis) const {
   switch (j.type) {
     case JointType::universal:
-      return (axis == 0) == j.reversed ? toWorld(stateAt(j.b), j.axisB[1]) : toWorld(stateAt(j.a), j.axisA[0]);
+      return (axis == 0) == j.reversed ? toWorld(stateAt(j.b), j.inB.axis[1]) : toWorld(stateAt(j.a), j.inA.axis[0]);
     case JointType::hinge2:
-      return axis == 0 ? toWorld(stateAt(j.a), j.axisA[0]) : toWorld(stateAt(j.b), j.axisB[1]);
+      return axis == 0 ? toWorld(stateAt(j.a), j.inA.axis[0]) : toWorld(stateAt(j.b), j.inB.axis[1]);
     case JointType::angularMotor: {
-      if (j.euler) return eulerAxes(j)[axis];
-      const Index body = j.frame[axis] == 1 ? j.a : j.frame[axis] == 2 ? j.b : kNone;
-      return toWorld(stateAt(body), j.axisA[axis]);
+      if (j.motor.euler) return eulerAxes(j)[axis];
+      const Index body = j.motor.frame[axis] == 1 ? j.a : j.motor.frame[axis] == 2 ? j.b : kNone;
+      return toWorld(stateAt(body), (j.motor.frame[axis] == 2 ? j.inB : j.inA).axis[axis]);
     }
     default:
-      return toWorld(stateAt(j.a), j.axisA[0]);
+      return toWorld(stateAt(j.a), j.inA.axis[0]);
   }
 }
 
@@ -83,7 +85,10 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
   if (p >= JointParameter::armature && v < 0) return;
   damped_ |= p == JointParameter::damping && v > 0;
   const Index index = joints_[joint];
-  *parameterOf(j, motors_[index], p, axis) = v;
+  engine::Blocks& scene = model_.extensions.sceneJoints[index];
+  auto soft = isSoft(p) ? scene.get<engine::JointSoftness>() : engine::JointSoftness{};
+  *parameterOf(j, soft, motors_[index], p, axis) = v;
+  if (isSoft(p)) scene.set(engine::Block::of(soft));
   const bool motor = p == JointParameter::velocity || p == JointParameter::maxForce;
   if (motor)
     endControl(index, axis);
@@ -101,7 +106,11 @@ void WorldModel::passMotor(Index joint, int axis) {
 
 double WorldModel::parameter(JointHandle joint, JointParameter p, int axis) const {
   const Joint& j = of(joint);
-  return hasParameter(j, p, axis) ? *parameterOf(j, motors_[joints_[joint]], p, axis) : 0;
+  if (!hasParameter(j, p, axis)) return 0;
+  const Index index = joints_[joint];
+  const auto soft =
+      isSoft(p) ? model_.extensions.sceneJoints[index].get<engine::JointSoftness>() : engine::JointSoftness{};
+  return *parameterOf(j, soft, motors_[index], p, axis);
 }
 
 void WorldModel::drive(JointHandle joint, int axis, double speed) {
@@ -274,9 +283,9 @@ double WorldModel::hingeAngle(Index joint) const {
   if (at.load(std::memory_order_acquire) == poses_) return angle.load(std::memory_order_relaxed);
   const Joint& j = model_.joints[joint];
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  const Quaternion relative = b ? timesConjugate(conjugateTimes(a->quaternion, b->quaternion), j.initialRotationA)
-                                : conjugateTimesConjugate(a->quaternion, j.initialRotationA);
-  const double found = physics::hingeAngle(relative, j.axisA[0]);
+  const Quaternion relative = b ? timesConjugate(conjugateTimes(a->quaternion, b->quaternion), j.inA.rotation)
+                                : conjugateTimesConjugate(a->quaternion, j.inA.rotation);
+  const double found = physics::hingeAngle(relative, j.inA.axis[0]);
   angle.store(found, std::memory_order_relaxed);
   at.store(poses_, std::memory_order_release);
   return found;
@@ -285,39 +294,42 @@ double WorldModel::hingeAngle(Index joint) const {
 /// Half of a universal joint: the cross between its bodies turns about one axis relative to each.
 double WorldModel::universalAngle(const Joint& j, int axis) const {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  const Vec3 first = times(a->rotation, j.axisA[0]), second = b ? times(b->rotation, j.axisB[1]) : j.axisB[1];
+  const Vec3 first = times(a->rotation, j.inA.axis[0]), second = b ? times(b->rotation, j.inB.axis[1]) : j.inB.axis[1];
   if (axis == 0) {
     const Quaternion cross = quaternionOf(frameFromAxes(first, second));
-    return physics::hingeAngle(timesConjugate(conjugateTimes(a->quaternion, cross), j.initialRotationA), j.axisA[0]);
+    return physics::hingeAngle(timesConjugate(conjugateTimes(a->quaternion, cross), j.inA.rotation), j.inA.axis[0]);
   }
   const Quaternion cross = quaternionOf(frameFromAxes(second, first));
-  return -physics::hingeAngle(timesConjugate(relativeTo(b, cross), j.initialRotationB), j.axisB[1]);
+  return -physics::hingeAngle(timesConjugate(relativeTo(b, cross), j.inB.rotation), j.inB.axis[1]);
 }
 
 double WorldModel::hinge2Angle(const Joint& j, int axis) const {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   // The other axis, in the frame of the body that this one is fixed to.
-  const Vec3 other = axis == 0 ? toBody(a, toWorld(b, j.axisB[1])) : toBody(b, toWorld(a, j.axisA[0]));
-  const std::array<Vec3, 2>& plane = axis == 0 ? j.planeA : j.planeB;
-  return -std::atan2(dot(plane[1], other), dot(plane[0], other));
+  const Vec3 other = axis == 0 ? toBody(a, toWorld(b, j.inB.axis[1])) : toBody(b, toWorld(a, j.inA.axis[0]));
+  const Vec3 &zero = axis == 0 ? j.inA.axis[1] : j.inB.axis[0], &third = axis == 0 ? j.inA.axis[2] : j.inB.axis[2];
+  return -std::atan2(dot(third, other), dot(zero, other));
 }
 
 double WorldModel::eulerAngle(const Joint& j, int axis) const {
   const std::array<Vec3, 3> axes = eulerAxes(j);
   // Where axes 2 and 0 were when set, carried along by the other body: angles 0 and 2 are counted from there.
-  Vec3 zero2 = toWorld(stateAt(j.a), j.reference1), zero0 = toWorld(stateAt(j.b), j.reference2);
-  if (j.reversed) std::swap(zero2, zero0);
-  if (axis == 0) return -std::atan2(axes[2].dot(axes[0].cross(zero2)), axes[2].dot(zero2));
+  const std::size_t ofA = j.reversed ? 2 : 0, ofB = 2 - ofA;
+  std::array<Vec3, 3> zero;
+  zero[ofA] = toWorld(stateAt(j.b), j.inB.axis[ofA]);
+  zero[ofB] = toWorld(stateAt(j.a), j.inA.axis[ofB]);
+  if (axis == 0) return -std::atan2(axes[2].dot(axes[0].cross(zero[2])), axes[2].dot(zero[2]));
   if (axis == 1) return -std::atan2(axes[2].dot(axes[0]), axes[2].dot(axes[0].cross(axes[1])));
-  return -std::atan2(zero0.dot(axes[1]), zero0.dot(axes[1].cross(axes[2])));
+  return -std::atan2(zero[0].dot(axes[1]), zero[0].dot(axes[1].cross(axes[2])));
 }
 
 double WorldModel::angleRate(JointHandle joint, int axis) const { return rateOf(joints_[joint], axis); }
 
 double WorldModel::sliderPosition(const Joint& j) const {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  const Vec3 along = times(a->rotation, j.axisA[0]);
-  const Vec3 offset = b ? Vec3(a->position - times(b->rotation, j.anchorB) - b->position) : a->position - j.anchorB;
+  const Vec3 along = times(a->rotation, j.inA.axis[0]);
+  const Vec3 offset =
+      b ? Vec3(a->position - times(b->rotation, j.inB.anchor) - b->position) : a->position - j.inB.anchor;
   const double position = dot(along, offset);
   return !b && j.reversed ? -position : position;
 }
@@ -340,9 +352,9 @@ double WorldModel::rateOf(Index joint, int axis) const {
   const Joint& j = model_.joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  if (j.type == JointType::angularMotor && axis >= j.motorAxes) return 0;
+  if (j.type == JointType::angularMotor && axis >= j.motor.axes) return 0;
   if (j.type == JointType::slider) {
-    const Vec3 along = times(a->rotation, j.axisA[0]);
+    const Vec3 along = times(a->rotation, j.inA.axis[0]);
     const double rate =
         b ? dot(along, a->linearVelocity) - dot(along, b->linearVelocity) : dot(along, a->linearVelocity);
     return !b && j.reversed ? -rate : rate;

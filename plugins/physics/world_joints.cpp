@@ -9,11 +9,12 @@
 
 namespace spark::physics {
 
-using engine::Assembly;
 using engine::axesOf;
+using engine::Block;
 using engine::DynamicState;
 using engine::Index;
 using engine::Joint;
+using engine::JointCall;
 using engine::JointType;
 using engine::kNone;
 
@@ -40,16 +41,13 @@ JointHandle WorldModel::createJoint(JointType type) {
   j.id = nextId_++;
   j.type = type;
   const engine::WorldParameters& p = model_.parameters;
-  for (engine::JointAxis& a : j.axes) {
-    a.soft.cfm = a.soft.stopCfm = p.cfm;
-    a.soft.stopErp = p.erp;
-  }
-  j.soft.erp = j.soft.suspensionErp = p.erp;
-  j.soft.cfm = j.soft.suspensionCfm = p.cfm;
-  if (type == JointType::fixed) j.initialRotationA.fill(0);
+  engine::JointSoftness soft{{}, p.erp, p.cfm, p.erp, p.cfm};
+  soft.axes.fill({.cfm = p.cfm, .stopErp = p.erp, .stopCfm = p.cfm});
+  model_.extensions.sceneJoints.emplace_back().set(engine::Block::of(soft));
+  if (type == JointType::fixed) j.inA.rotation.fill(0);
   if (type != JointType::angularMotor) {
-    j.axisA[0] = j.axisB[0] = j.planeA[0] = Vec3::UnitX();
-    j.axisB[1] = j.planeA[1] = Vec3::UnitY();
+    j.inA.axis[0] = j.inB.axis[0] = j.inA.axis[1] = Vec3::UnitX();
+    j.inB.axis[1] = j.inA.axis[2] = Vec3::UnitY();
   }
   ++model_.structure;
   return joints_.add();
@@ -94,7 +92,7 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
       setSliderOffset(j);
       break;
     case JointType::hinge:
-      j.axisB[0] = toBody(second, toWorld(first, j.axisA[0]));
+      j.inB.axis[0] = toBody(second, toWorld(first, j.inA.axis[0]));
       break;
     case JointType::hinge2:
       setHinge2Axes(j);
@@ -102,28 +100,32 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
     default:
       break;
   }
-  if (hasAnchor(j.type)) anchorSet(j, j.reversed ? j.anchorB : pointToWorld(first, j.anchorA));
-  if (j.assembly.empty()) return;
+  if (hasAnchor(j.type)) anchorSet(j, j.reversed ? j.inB.anchor : pointToWorld(first, j.inA.anchor));
+  if (j.setAt == 0) return;
   // The calls that would give the joint these numbers.
-  j.assembly.clear();
-  if (hasAnchor(j.type)) remember(j, Assembly::Kind::anchor, 0, pointToWorld(first, j.anchorA));
-  for (int axis = 0; axis < axesOf(j.type); ++axis) remember(j, Assembly::Kind::axis, axis, worldAxis(j, axis));
+  for (int number = 0; model_.exactReplay && number < static_cast<int>(JointCall::kNumbers); ++number)
+    model_.extensions.sceneJoints[joints_[joint]].remove(Block::kindOf<JointCall>(number));
+  if (hasAnchor(j.type)) remember(j, JointCall::anchor, 0, pointToWorld(first, j.inA.anchor));
+  for (int axis = 0; axis < axesOf(j.type); ++axis) remember(j, JointCall::setAxis, axis, worldAxis(j, axis));
 }
 
-/// Appends a call to the joint's assembly, in place of an earlier one of its kind.
-Assembly& WorldModel::remember(Joint& j, Assembly::Kind kind, int axis, const Vec3& world) {
-  const auto pose = [&](Index body) {
-    if (body == kNone) return engine::AssemblyPose{Vec3::Zero(), {1, 0, 0, 0}, Mat3::Identity()};
-    const DynamicState& s = state_.bodies[body];
-    return engine::AssemblyPose{s.position, s.quaternion, s.rotation};
-  };
-  const bool single = kind == Assembly::Kind::anchor || kind == Assembly::Kind::motor || kind == Assembly::Kind::fixed;
-  std::erase_if(j.assembly, [&](const Assembly& a) { return a.kind == kind && (single || a.axis == axis); });
-  j.assembledAt = ++assemblies_;
+/// Notes that a joint was set, and how, for engines that repeat the calls in exact replay.
+void WorldModel::remember(Joint& j, JointCall::Kind kind, int axis, const Vec3& world, int frame) {
+  j.setAt = ++settings_;
   ++model_.dynamics;
-  // The mode of a motor comes before its axes.
-  const auto at = kind == Assembly::Kind::motor ? j.assembly.begin() : j.assembly.end();
-  return *j.assembly.insert(at, Assembly{kind, axis, 0, world, pose(j.a), pose(j.b)});
+  if (!model_.exactReplay) return;
+  const auto place = [&](Index body) {
+    JointCall::Place p;
+    if (body == kNone) return p;
+    const DynamicState& s = state_.bodies[body];
+    std::copy_n(s.position.data(), 3, p.position.begin());
+    p.quaternion = s.quaternion;
+    std::copy_n(s.rotation.data(), 9, p.rotation.begin());
+    return p;
+  };
+  const JointCall call{kind, axis, frame, {world.x(), world.y(), world.z()}, place(j.a), place(j.b)};
+  const auto index = static_cast<std::size_t>(&j - model_.joints.data());
+  model_.extensions.sceneJoints[index].set(Block::of(call, call.numberOf()));
 }
 
 // ---- anchor and axes ----
@@ -132,7 +134,7 @@ void WorldModel::setAnchor(JointHandle joint, const Vec3& wanted) {
   Joint& j = of(joint);
   if (!attached(j) || !hasAnchor(j.type) || !inRange(wanted)) return;
   const Vec3 p = rounded(wanted);
-  remember(j, Assembly::Kind::anchor, 0, p);
+  remember(j, JointCall::anchor, 0, p);
   anchorSet(j, p);
 }
 
@@ -144,23 +146,23 @@ void WorldModel::setAxis(JointHandle joint, int axis, const Vec3& world, int fra
   if (j.type == JointType::angularMotor) {
     if ((frame == 1 && j.reversed) || (frame == 2 && j.b == kNone && !j.reversed) || frame < 0 || frame > 2)
       frame = 0;  // that body is the world
-    if (axis >= j.motorAxes) return;
+    if (axis >= j.motor.axes) return;
   }
   // Parallel axes of a hinge2 have no meaning: the other one is moved to a perpendicular direction, and the caller
   // usually sets it next.
   if (j.type == JointType::hinge2 && v.normalized().cross(worldAxis(j, 1 - axis)).norm() < 1e-9) {
     const Vec3 lateral = v.unitOrthogonal();
-    remember(j, Assembly::Kind::axis, 1 - axis, lateral);
-    (axis == 0 ? j.axisB[1] : j.axisA[0]) = toBody(stateAt(axis == 0 ? j.b : j.a), lateral);
+    remember(j, JointCall::setAxis, 1 - axis, lateral);
+    (axis == 0 ? j.inB.axis[1] : j.inA.axis[0]) = toBody(stateAt(axis == 0 ? j.b : j.a), lateral);
   }
-  remember(j, Assembly::Kind::axis, axis, v).frame = frame;
+  remember(j, JointCall::setAxis, axis, v, frame);
   axisSet(j, axis, v, frame);
 }
 
 void WorldModel::anchorSet(Joint& j, const Vec3& world) {
   ++poses_;
-  j.anchorA = pointToBody(stateAt(j.a), world);
-  j.anchorB = pointToBody(stateAt(j.b), world);
+  j.inA.anchor = pointToBody(stateAt(j.a), world);
+  j.inB.anchor = pointToBody(stateAt(j.b), world);
   setRelativeRotation(j);
 }
 
@@ -172,23 +174,23 @@ void WorldModel::axisSet(Joint& j, int axis, const Vec3& world, int frame) {
   const Vec3 second = b ? toBody(b, direction) : world;
   switch (j.type) {
     case JointType::hinge:
-      j.axisA[0] = toBody(a, direction);
-      j.axisB[0] = second;
+      j.inA.axis[0] = toBody(a, direction);
+      j.inB.axis[0] = second;
       break;
     case JointType::slider:
-      j.axisA[0] = toBody(a, direction);
+      j.inA.axis[0] = toBody(a, direction);
       return setSliderOffset(j);
     case JointType::universal:
-      (axis == 0) == j.reversed ? j.axisB[1] = second : j.axisA[0] = toBody(a, direction);
+      (axis == 0) == j.reversed ? j.inB.axis[1] = second : j.inA.axis[0] = toBody(a, direction);
       break;
     case JointType::hinge2:
-      axis == 0 ? j.axisA[0] = toBody(a, direction) : j.axisB[1] = second;
+      axis == 0 ? j.inA.axis[0] = toBody(a, direction) : j.inB.axis[1] = second;
       return setHinge2Axes(j);
     case JointType::angularMotor:
       if (frame != 0 && j.reversed) frame = 3 - frame;
-      j.frame[axis] = frame;
-      j.axisA[axis] = toBody(frame == 1 ? a : frame == 2 ? b : nullptr, world).normalized();
-      if (j.euler) setEulerReferences(j);
+      j.motor.frame[axis] = frame;
+      j.inA.axis[axis] = j.inB.axis[axis] = toBody(frame == 1 ? a : frame == 2 ? b : nullptr, world).normalized();
+      if (j.motor.euler) setEulerReferences(j);
       return;
     default:
       break;
@@ -199,35 +201,35 @@ void WorldModel::axisSet(Joint& j, int axis, const Vec3& world, int frame) {
 /// Universal joint: the frames of the two axes, relative to each body.
 void WorldModel::setUniversalFrames(Joint& j) {
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  const Vec3 first = toWorld(a, j.axisA[0]), second = toWorld(b, j.axisB[1]);
-  j.initialRotationA = relativeTo(a, quaternionOf(frameFromAxes(first, second)));
-  j.initialRotationB = relativeTo(b, quaternionOf(frameFromAxes(second, first)));
+  const Vec3 first = toWorld(a, j.inA.axis[0]), second = toWorld(b, j.inB.axis[1]);
+  j.inA.rotation = relativeTo(a, quaternionOf(frameFromAxes(first, second)));
+  j.inB.rotation = relativeTo(b, quaternionOf(frameFromAxes(second, first)));
 }
 
 /// Hinge2: the zero direction of each angle is the other axis, made perpendicular to its own.
 void WorldModel::setHinge2Planes(Joint& j) {
   startCoordinates(j);
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  const Vec3 first = toWorld(a, j.axisA[0]), second = toWorld(b, j.axisB[1]);
+  const Vec3 first = toWorld(a, j.inA.axis[0]), second = toWorld(b, j.inB.axis[1]);
   const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
              fromSecond = (first - first.dot(second) * second).normalized();
-  j.planeA[0] = toBody(a, fromFirst);
-  j.planeA[1] = toBody(a, first.cross(fromFirst));
-  j.planeB[0] = toBody(b, fromSecond);
-  j.planeB[1] = toBody(b, second.cross(fromSecond));
+  j.inA.axis[1] = toBody(a, fromFirst);
+  j.inA.axis[2] = toBody(a, first.cross(fromFirst));
+  j.inB.axis[0] = toBody(b, fromSecond);
+  j.inB.axis[2] = toBody(b, second.cross(fromSecond));
 }
 
 /// Hinge2: the angle between the axes, and the zero directions.
 void WorldModel::setHinge2Axes(Joint& j) {
-  const Vec3 first = toWorld(stateAt(j.a), j.axisA[0]), second = toWorld(stateAt(j.b), j.axisB[1]);
+  const Vec3 first = toWorld(stateAt(j.a), j.inA.axis[0]), second = toWorld(stateAt(j.b), j.inB.axis[1]);
   j.sinAxes = first.cross(second).norm();
   j.cosAxes = first.dot(second);
   setHinge2Planes(j);
 }
 
 void WorldModel::setSliderOffset(Joint& j) {
-  j.anchorB = pointToBody(stateAt(j.b), stateAt(j.a)->position);
-  j.initialRotationA = relativeRotation(stateAt(j.a), stateAt(j.b));
+  j.inB.anchor = pointToBody(stateAt(j.b), stateAt(j.a)->position);
+  j.inA.rotation = relativeRotation(stateAt(j.a), stateAt(j.b));
 }
 
 /// Euler motor: the zero direction of each angle is the other body's axis.
@@ -235,8 +237,8 @@ void WorldModel::setEulerReferences(Joint& j) {
   if (!attached(j)) return;
   startCoordinates(j);
   const int first = j.reversed ? 2 : 0, second = 2 - first;
-  j.reference2 = toBody(stateAt(j.b), toWorld(stateAt(j.a), j.axisA[first]));
-  j.reference1 = toBody(stateAt(j.a), toWorld(stateAt(j.b), j.axisA[second]));
+  j.inB.axis[first] = toBody(stateAt(j.b), toWorld(stateAt(j.a), j.inA.axis[first]));
+  j.inA.axis[second] = toBody(stateAt(j.a), toWorld(stateAt(j.b), j.inB.axis[second]));
 }
 
 /// The numbers that depend on the relative rotation of the bodies.
@@ -244,7 +246,7 @@ void WorldModel::setRelativeRotation(Joint& j) {
   startCoordinates(j);
   switch (j.type) {
     case JointType::hinge:
-      j.initialRotationA = relativeRotation(stateAt(j.a), stateAt(j.b));
+      j.inA.rotation = relativeRotation(stateAt(j.a), stateAt(j.b));
       break;
     case JointType::universal:
       setUniversalFrames(j);
@@ -260,34 +262,33 @@ void WorldModel::setRelativeRotation(Joint& j) {
 void WorldModel::setFixed(JointHandle joint) {
   Joint& j = of(joint);
   if (j.type != JointType::fixed || !attached(j)) return;
-  remember(j, Assembly::Kind::fixed, 0, Vec3::Zero());
+  remember(j, JointCall::setFixed, 0, Vec3::Zero());
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
-  j.anchorA = b ? pointToBody(a, b->position) : Vec3(Vec3::Zero());
-  j.anchorB = b ? Vec3(Vec3::Zero()) : a->position;
-  j.initialRotationA = relativeRotation(a, b);
+  j.inA.anchor = b ? pointToBody(a, b->position) : Vec3(Vec3::Zero());
+  j.inB.anchor = b ? Vec3(Vec3::Zero()) : a->position;
+  j.inA.rotation = relativeRotation(a, b);
 }
 
 void WorldModel::setAngularMotor(JointHandle joint, int axes, bool euler) {
   Joint& j = of(joint);
   if (j.type != JointType::angularMotor) return;
   if (axes < 0 || axes > 3) throw Error(fmt::format("expected 0 to 3 axes of an angular motor, found {}", axes));
-  j.euler = euler;
-  j.motorAxes = euler ? 3 : axes;
+  j.motor.euler = euler;
+  j.motor.axes = euler ? 3 : axes;
   if (euler) setEulerReferences(j);
-  Assembly& call = remember(j, Assembly::Kind::motor, j.motorAxes, Vec3::Zero());
-  call.frame = euler;
+  remember(j, JointCall::setMotor, j.motor.axes, Vec3::Zero(), euler);
 }
 
 void WorldModel::setMotorAngle(JointHandle joint, int axis, double angle) {
   Joint& j = of(joint);
-  if (j.type != JointType::angularMotor || j.euler || axis < 0 || axis >= 3 || !std::isfinite(angle)) return;
-  j.userAngle[axis] = angle;
-  remember(j, Assembly::Kind::angle, axis, Vec3(angle, 0, 0));
+  if (j.type != JointType::angularMotor || j.motor.euler || axis < 0 || axis >= 3 || !std::isfinite(angle)) return;
+  j.motor.angle[axis] = angle;
+  remember(j, JointCall::setAngle, axis, Vec3(angle, 0, 0));
 }
 
 Vec3 WorldModel::anchor(JointHandle joint) const {
   const Joint& j = of(joint);
-  return attached(j) && hasAnchor(j.type) ? pointToWorld(stateAt(j.a), j.anchorA) : Vec3(Vec3::Zero());
+  return attached(j) && hasAnchor(j.type) ? pointToWorld(stateAt(j.a), j.inA.anchor) : Vec3(Vec3::Zero());
 }
 
 Vec3 WorldModel::axis(JointHandle joint, int axis) const {

@@ -375,8 +375,9 @@ void WorldModel::compact() {
   }
   if (geoms_.removed() > 0) remap(edited_, geoms_.compact(model_.geoms, model_.extensions.geoms, geomEdited_));
   if (joints_.removed() > 0) {
-    const std::vector<Index> now = joints_.compact(model_.joints, model_.extensions.joints, state_.joints,
-                                                   state_.coordinates, state_.motors, motors_, angles_);
+    const std::vector<Index> now =
+        joints_.compact(model_.joints, model_.extensions.joints, model_.extensions.sceneJoints, state_.joints,
+                        state_.coordinates, state_.motors, motors_, angles_);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
     listControls();

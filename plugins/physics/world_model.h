@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/scene_joint.h"
 #include "api/single_precision.h"
 #include "queries.h"
 #include "rotations.h"
@@ -298,7 +299,7 @@ class WorldModel {
   void checkBodies();
 
   // Joints (world_joints.cpp, world_axes.cpp, world_turns.cpp).
-  engine::Assembly& remember(engine::Joint& joint, engine::Assembly::Kind kind, int axis, const Vec3& world);
+  void remember(engine::Joint& joint, engine::JointCall::Kind kind, int axis, const Vec3& world, int frame = 0);
   void anchorSet(engine::Joint& j, const Vec3& world);
   void axisSet(engine::Joint& j, int axis, const Vec3& world, int frame);
   void setRelativeRotation(engine::Joint& j);
@@ -363,7 +364,7 @@ class WorldModel {
   };
   std::vector<KeptForce> kept_;
   bool again_ = false;  ///< the next step is a further one
-  std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, assemblies_ = 0;
+  std::uint64_t nextId_ = 1, steps_ = 0, attachments_ = 0, settings_ = 0;
   Compiled<engine::ICollision> collision_;
   Compiled<engine::IEngine> engine_;
   std::pair<std::uint64_t, std::uint64_t> ownAt_;  ///< structure and collision that its own detector has

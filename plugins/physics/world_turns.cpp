@@ -32,7 +32,7 @@ int turningAxes(const Joint& j) {
     case JointType::hinge2:
       return axesOf(j.type);
     case JointType::angularMotor:
-      return j.euler ? j.motorAxes : 0;
+      return j.motor.euler ? j.motor.axes : 0;
     default:
       return 0;
   }
@@ -104,7 +104,7 @@ double WorldModel::angleOf(Index joint, int axis) const {
   const Joint& j = model_.joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
   if (j.type == JointType::slider) return sliderPosition(j);
-  if (axis >= turningAxes(j)) return axis < j.motorAxes ? j.userAngle[axis] : 0;
+  if (axis >= turningAxes(j)) return axis < j.motor.axes ? j.motor.angle[axis] : 0;
   const AxisView view = viewOf(j, axis);
   const double raw = rawAngle(joint, view.axis);
   const std::int32_t turns = turnsNow(joint, view.axis, raw);

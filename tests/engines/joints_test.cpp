@@ -157,7 +157,7 @@ TEST_CASE("a hanging closed loop of bodies holds together") {
         for (int i = 0; i < 8; ++i) {
           const engine::Joint& j = w.world.model().joints[w.world.index(joints[i])];
           const engine::DynamicState &a = w.world.state().bodies[j.a], &b = w.world.state().bodies[j.b];
-          CHECK((a.position + a.rotation * j.anchorA - b.position - b.rotation * j.anchorB).norm() < 0.02);
+          CHECK((a.position + a.rotation * j.inA.anchor - b.position - b.rotation * j.inB.anchor).norm() < 0.02);
         }
       },
       {&engine::Capabilities::joints, &engine::Capabilities::loops});

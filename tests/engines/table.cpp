@@ -33,7 +33,7 @@ double gap(EngineWorld& w) {
   w.run(2);
   const engine::Joint& joint = w.world.model().joints[w.world.index(j)];
   const engine::DynamicState& a = w.world.state().bodies[joint.a];
-  return (a.position + a.rotation * joint.anchorA - joint.anchorB).norm();
+  return (a.position + a.rotation * joint.inA.anchor - joint.inB.anchor).norm();
 }
 
 /// Overshoot of a motor of 5 rad/s and 20 Nm beyond its stop, with 1 kg m^2 on it [rad].

@@ -38,7 +38,10 @@ double median(std::vector<double> v) {
 /// The articulated solver in one thread, which measures its time.
 struct TimedSolver : engine::ISolver {
   explicit TimedSolver(engine::IEngine& below) : deferred(below) {}
-  void compile(const engine::Model&, const engine::State&) override { deferredKnows = false; }
+  void compile(const engine::Model& model, const engine::State&) override {
+    stepper.compile(model);
+    deferredKnows = false;
+  }
   void step(engine::Step& step) override {
     const double start = now();
     const auto others = stepper.step(step, 600, 1, {});
