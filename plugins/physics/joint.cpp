@@ -247,7 +247,7 @@ void Joint::saveState(StateWriter& out) const {
     if (!c) continue;
     for (const double v : {c->stiffness, c->damping, c->position, c->velocity, c->force, c->maxForce}) out.write(v);
   }
-  for (int axis = 0; axis < axes(); ++axis) out.write(world() ? world()->coordinate(joint_, axis) : 0.0);
+  for (int axis = 0; axis < axes(); ++axis) out.write(world() ? world()->at(joint_).coordinate(axis) : 0.0);
 }
 
 void Joint::loadState(StateReader& in) {

@@ -18,15 +18,15 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   Leaf& leaf() override { return *this; }
   IRigidBody* body(int index) const override { return bodies_[index == 0 ? 0 : 1].get(); }
   int axes() const override;
-  Vec3 anchor() const override { return world() ? world()->anchor(joint_) : Vec3(Vec3::Zero()); }
-  Vec3 axisNow(int axis) const override { return world() ? world()->axis(joint_, axis) : Vec3(Vec3::Zero()); }
-  double angle(int axis) const override { return world() ? world()->angle(joint_, axis) : 0; }
+  Vec3 anchor() const override { return world() ? world()->at(joint_).anchor() : Vec3(Vec3::Zero()); }
+  Vec3 axisNow(int axis) const override { return world() ? world()->at(joint_).axis(axis) : Vec3(Vec3::Zero()); }
+  double angle(int axis) const override { return world() ? world()->at(joint_).angle(axis) : 0; }
   double sensedAngle(int axis) const override {
     return !world()                       ? 0
-           : world()->model().exactReplay ? world()->angleOfPoses(joint_, axis)
-                                          : world()->angle(joint_, axis);
+           : world()->model().exactReplay ? world()->at(joint_).angleOfPoses(axis)
+                                          : world()->at(joint_).angle(axis);
   }
-  double angleRate(int axis) const override { return world() ? world()->angleRate(joint_, axis) : 0; }
+  double angleRate(int axis) const override { return world() ? world()->at(joint_).angleRate(axis) : 0; }
   double parameter(engine::JointParameter p, int axis) const override {
     return world() ? world()->parameter(joint_, p, axis) : 0;
   }
@@ -39,7 +39,7 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   }
   void setWorldAnchor(const Vec3& point) override;
   void setWorldAxis(int axis, const Vec3& direction) override;
-  bool atStop(int axis) const override { return world() && world()->atStop(joint_, axis); }
+  bool atStop(int axis) const override { return world() && world()->at(joint_).atStop(axis); }
   double maxSpeed(int axis) const override { return axis == 0 || axis == 1 ? maxSpeed_[axis] : 0; }
   double feedbackTorque() const override;
   bool feedback() const override { return feedback_; }

@@ -189,6 +189,7 @@ struct Sink : engine::IContactSink {
 
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldModel> world = world_->model();
+  const std::shared_ptr<physics::Stepper> stepper = world_->stepper();
   engine::IEngine& engine = *engine_;
   effects_.check(engine, world->model());
   engine::ICollision* const collision = collision_.get();
@@ -196,34 +197,34 @@ void PhysicsServer::solve(const Event& event) {
   const InUse detecting(collision ? collision->leaf() : engine.leaf(), "a step is under way");
   const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.capabilities().usualStep;
   const int steps = usual > 0 ? static_cast<int>(std::clamp(std::round(event.step / usual), 1.0, 1000.0)) : 1;
-  world->keepForces(steps > 1);
+  stepper->keepForces(steps > 1);
   const bool late = engine.capabilities().late;
   for (int i = 0; i < steps; ++i) {
     if (late) {
-      if (i > 0) world->repeatForces();
-      solveLate(*world, event.step / steps, steps);
+      if (i > 0) stepper->repeatForces();
+      solveLate(*world, *stepper, event.step / steps, steps);
       continue;
     }
     // Contacts and their handlers.
     contacts_.clear();
     contactsAt_ = kernel().structureVersion();
-    world->detect(engine, collision, physics::pairCounts, contactsPerPair_, contacts_);
+    stepper->detect(engine, collision, physics::pairCounts, contactsPerPair_, contacts_);
     physics::runHandlers(contacts_, kernel());
 
     // One step. Handlers must not see feedback that only measureForces requested.
     measured_.clear();
     if (measureForces_) physics::measure(contacts_, measured_);
-    if (i > 0) world->repeatForces();
-    world->step(engine, contacts_, event.step / steps);
+    if (i > 0) stepper->repeatForces();
+    stepper->step(engine, contacts_, event.step / steps);
     for (const std::size_t k : measured_) contacts_[k].feedback = false;
     physics::runSolved(contacts_, steps);
     for (const std::size_t k : measured_) contacts_[k].feedback = true;
   }
 }
 
-void PhysicsServer::solveLate(physics::WorldModel& world, double dt, int steps) {
+void PhysicsServer::solveLate(const physics::WorldModel& world, physics::Stepper& stepper, double dt, int steps) {
   Sink sink(contacts_, contactsPerPair_);
-  world.step(*engine_, contacts_, dt, &sink);
+  stepper.step(*engine_, contacts_, dt, &sink);
   contactsAt_ = kernel().structureVersion();
   physics::sortByPair(contacts_, world.model(), order_, sorted_);
   // All forces are there, but handlers see those that they ask for.
@@ -294,7 +295,7 @@ void PhysicsServer::reportFaults() {
   // One line for all of them: a robot has many.
   const RigidBody* first = nullptr;
   std::size_t others = 0;
-  for (const physics::BodyHandle handle : world_->model()->repaired())
+  for (const physics::BodyHandle handle : world_->stepper()->repaired())
     for (const Placed& p : bodies_)
       if (p.body->handle() == handle && p.body->countFault()) (first ? void(++others) : void(first = p.body));
   if (!first) return;

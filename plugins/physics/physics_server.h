@@ -63,7 +63,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   /// Detects contacts, calls handlers and steps the world.
   void solve(const Event& event);
   /// One of several steps of an engine that finds contacts within it: handlers run after it.
-  void solveLate(physics::WorldModel& world, double dt, int steps);
+  void solveLate(const physics::WorldModel& world, physics::Stepper& stepper, double dt, int steps);
   /// The place phase: writes the poses of bodies to their transforms.
   void place(const Event& event);
   /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.

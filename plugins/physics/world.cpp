@@ -80,7 +80,9 @@ void World::onLink() {
   PhysicsObject::onLink();
   auto& server = kernel().root().require<PhysicsServer>(IPhysicsServer::kPath);
   server.expectEngines();
+  stepper_ = nullptr;  // it ends before its model does
   model_ = std::make_shared<physics::WorldModel>(server.exactReplay());
+  stepper_ = std::make_shared<physics::Stepper>(*model_);
   apply();
   model_->setBlocks(blocks_);
 }

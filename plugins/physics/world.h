@@ -4,6 +4,7 @@
 
 #include "api/extension.h"
 #include "handles.h"
+#include "stepper.h"
 
 namespace spark {
 
@@ -29,6 +30,8 @@ class World : public PhysicsObject, public engine::IExtended {
 
   /// Model and state; made when the node is linked.
   const std::shared_ptr<physics::WorldModel>& model() const { return model_; }
+  /// What steps it.
+  const std::shared_ptr<physics::Stepper>& stepper() const { return stepper_; }
   /// The space of colliders without a Space above them: the scene's first Space, else one that the world owns.
   const std::shared_ptr<physics::SharedSpace>& space();
   /// The world of a node: a child of its nearest ancestor that has one. Throws Error when there is none.
@@ -65,6 +68,7 @@ class World : public PhysicsObject, public engine::IExtended {
   engine::WorldParameters parameters_;
   engine::Blocks blocks_;
   std::shared_ptr<physics::WorldModel> model_;
+  std::shared_ptr<physics::Stepper> stepper_;
   std::shared_ptr<physics::SharedSpace> ownSpace_;
   bool recentred_ = false;
 };

@@ -18,25 +18,15 @@ using engine::JointCall;
 using engine::JointType;
 using engine::kNone;
 
-namespace {
-
-bool hasAnchor(JointType type) {
-  return type == JointType::ball || type == JointType::hinge || type == JointType::hinge2 ||
-         type == JointType::universal;
-}
-
-}  // namespace
-
 // ---- creation and bodies ----
 
 JointHandle WorldModel::createJoint(JointType type) {
   Joint& j = model_.joints.emplace_back();
   model_.extensions.joints.emplace_back();
   state_.joints.emplace_back();
-  state_.coordinates.emplace_back();
   state_.motors.emplace_back();
   motors_.emplace_back();
-  angles_.emplace_back();
+  kinematics_.add();
   controlAt_.push_back({kNone, kNone, kNone});
   j.id = nextId_++;
   j.type = type;
@@ -54,18 +44,19 @@ JointHandle WorldModel::createJoint(JointType type) {
 }
 
 void WorldModel::destroyJoint(JointHandle joint) {
-  detach(of(joint));
+  detach(joints_[joint]);
   joints_.remove(joint);
   ++model_.structure;
   compactWhenMany();
 }
 
 /// Leaves the joint without bodies.
-void WorldModel::detach(Joint& j) {
+void WorldModel::detach(Index joint) {
+  Joint& j = model_.joints[joint];
   if (j.a != kNone) --model_.bodies[j.a].joints;
   if (j.b != kNone) --model_.bodies[j.b].joints;
   j.a = j.b = kNone;
-  startCoordinates(j);
+  kinematics_.restart(joint);
   j.attachedAt = ++attachments_;
   ++model_.structure;
 }
@@ -76,7 +67,7 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
   Joint& j = of(joint);
   if (j.type == JointType::hinge2 && (a == BodyHandle::none) != (b == BodyHandle::none))
     throw Error("a wheel's joint (hinge2) needs two bodies, found one: name the chassis and the wheel");
-  detach(j);
+  detach(joints_[joint]);
   j.reversed = a == BodyHandle::none && b != BodyHandle::none;
   j.a = bodies_[j.reversed ? b : a];
   j.b = j.reversed ? kNone : bodies_[b];
@@ -106,7 +97,8 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
   for (int number = 0; model_.exactReplay && number < static_cast<int>(JointCall::kNumbers); ++number)
     model_.extensions.sceneJoints[joints_[joint]].remove(Block::kindOf<JointCall>(number));
   if (hasAnchor(j.type)) remember(j, JointCall::anchor, 0, pointToWorld(first, j.inA.anchor));
-  for (int axis = 0; axis < axesOf(j.type); ++axis) remember(j, JointCall::setAxis, axis, worldAxis(j, axis));
+  for (int axis = 0; axis < axesOf(j.type); ++axis)
+    remember(j, JointCall::setAxis, axis, kinematics_.worldAxis(j, axis));
 }
 
 /// Notes that a joint was set, and how, for engines that repeat the calls in exact replay.
@@ -124,8 +116,7 @@ void WorldModel::remember(Joint& j, JointCall::Kind kind, int axis, const Vec3& 
     return p;
   };
   const JointCall call{kind, axis, frame, {world.x(), world.y(), world.z()}, place(j.a), place(j.b)};
-  const auto index = static_cast<std::size_t>(&j - model_.joints.data());
-  model_.extensions.sceneJoints[index].set(Block::of(call, call.numberOf()));
+  model_.extensions.sceneJoints[indexOf(j)].set(Block::of(call, call.numberOf()));
 }
 
 // ---- anchor and axes ----
@@ -150,7 +141,7 @@ void WorldModel::setAxis(JointHandle joint, int axis, const Vec3& world, int fra
   }
   // Parallel axes of a hinge2 have no meaning: the other one is moved to a perpendicular direction, and the caller
   // usually sets it next.
-  if (j.type == JointType::hinge2 && v.normalized().cross(worldAxis(j, 1 - axis)).norm() < 1e-9) {
+  if (j.type == JointType::hinge2 && v.normalized().cross(kinematics_.worldAxis(j, 1 - axis)).norm() < 1e-9) {
     const Vec3 lateral = v.unitOrthogonal();
     remember(j, JointCall::setAxis, 1 - axis, lateral);
     (axis == 0 ? j.inB.axis[1] : j.inA.axis[0]) = toBody(stateAt(axis == 0 ? j.b : j.a), lateral);
@@ -160,14 +151,14 @@ void WorldModel::setAxis(JointHandle joint, int axis, const Vec3& world, int fra
 }
 
 void WorldModel::anchorSet(Joint& j, const Vec3& world) {
-  ++poses_;
+  ++data_.poses;
   j.inA.anchor = pointToBody(stateAt(j.a), world);
   j.inB.anchor = pointToBody(stateAt(j.b), world);
   setRelativeRotation(j);
 }
 
 void WorldModel::axisSet(Joint& j, int axis, const Vec3& world, int frame) {
-  ++poses_;
+  ++data_.poses;
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   const Vec3 direction = world.normalized();
   // ODE does not normalise an axis in the world frame.
@@ -208,7 +199,7 @@ void WorldModel::setUniversalFrames(Joint& j) {
 
 /// Hinge2: the zero direction of each angle is the other axis, made perpendicular to its own.
 void WorldModel::setHinge2Planes(Joint& j) {
-  startCoordinates(j);
+  restart(j);
   const DynamicState *a = stateAt(j.a), *b = stateAt(j.b);
   const Vec3 first = toWorld(a, j.inA.axis[0]), second = toWorld(b, j.inB.axis[1]);
   const Vec3 fromFirst = (second - first.dot(second) * first).normalized(),
@@ -235,7 +226,7 @@ void WorldModel::setSliderOffset(Joint& j) {
 /// Euler motor: the zero direction of each angle is the other body's axis.
 void WorldModel::setEulerReferences(Joint& j) {
   if (!attached(j)) return;
-  startCoordinates(j);
+  restart(j);
   const int first = j.reversed ? 2 : 0, second = 2 - first;
   j.inB.axis[first] = toBody(stateAt(j.b), toWorld(stateAt(j.a), j.inA.axis[first]));
   j.inA.axis[second] = toBody(stateAt(j.a), toWorld(stateAt(j.b), j.inB.axis[second]));
@@ -243,7 +234,7 @@ void WorldModel::setEulerReferences(Joint& j) {
 
 /// The numbers that depend on the relative rotation of the bodies.
 void WorldModel::setRelativeRotation(Joint& j) {
-  startCoordinates(j);
+  restart(j);
   switch (j.type) {
     case JointType::hinge:
       j.inA.rotation = relativeRotation(stateAt(j.a), stateAt(j.b));
@@ -284,16 +275,6 @@ void WorldModel::setMotorAngle(JointHandle joint, int axis, double angle) {
   if (j.type != JointType::angularMotor || j.motor.euler || axis < 0 || axis >= 3 || !std::isfinite(angle)) return;
   j.motor.angle[axis] = angle;
   remember(j, JointCall::setAngle, axis, Vec3(angle, 0, 0));
-}
-
-Vec3 WorldModel::anchor(JointHandle joint) const {
-  const Joint& j = of(joint);
-  return attached(j) && hasAnchor(j.type) ? pointToWorld(stateAt(j.a), j.inA.anchor) : Vec3(Vec3::Zero());
-}
-
-Vec3 WorldModel::axis(JointHandle joint, int axis) const {
-  const Joint& j = of(joint);
-  return axis >= 0 && axis < axesOf(j.type) && attached(j) ? worldAxis(j, axis) : Vec3(Vec3::Zero());
 }
 
 }  // namespace spark::physics

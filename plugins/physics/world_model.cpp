@@ -66,10 +66,9 @@ void WorldModel::setInnerCollision(SpaceHandle space, bool on) {
 BodyHandle WorldModel::createBody() {
   model_.bodies.emplace_back().id = nextId_++;
   state_.bodies.emplace_back();
-  watch_.emplace_back();
+  watch_.add();
   // A step must not allocate.
   state_.moved.reserve(state_.bodies.capacity());
-  repaired_.reserve(state_.bodies.capacity());
   ++model_.structure;
   return bodies_.add();
 }
@@ -83,8 +82,8 @@ void WorldModel::destroyBody(BodyHandle body) {
     model_.geoms[g].centred = false;
     markEdited(g);
   }
-  for (engine::Joint& j : model_.joints)
-    if (j.a == i || j.b == i) detach(j);
+  for (Index j = 0; j < model_.joints.size(); ++j)
+    if (model_.joints[j].a == i || model_.joints[j].b == i) detach(j);
   bodies_.remove(body);
   ++model_.structure;
   compactWhenMany();
@@ -115,8 +114,9 @@ engine::BodyState WorldModel::state(BodyHandle body) const {
 void WorldModel::setPosition(BodyHandle body, const Vec3& wanted) {
   if (!inRange(wanted)) return;
   const Index i = bodies_[body];
-  ++poses_;
-  state_.bodies[i].position = watch_[i].validPosition = rounded(wanted);
+  ++data_.poses;
+  state_.bodies[i].position = rounded(wanted);
+  watch_.placed(i);
   ++state_.bodies[i].version;
   state_.markMoved(i);
 }
@@ -142,11 +142,12 @@ Mat3 corrected(const Mat3& m) {
 
 void WorldModel::setRotation(BodyHandle body, const Mat3& wanted) {
   if (!inRange(wanted.data(), 9) || std::abs(wanted.determinant()) < 1e-6) return;
-  ++poses_;
+  ++data_.poses;
   const Mat3 r = rounded(corrected(wanted));
   const Index i = bodies_[body];
   state_.bodies[i].rotation = orthogonalized(r);
-  state_.bodies[i].quaternion = watch_[i].validQuaternion = normalized(quaternionOf(r));
+  state_.bodies[i].quaternion = normalized(quaternionOf(r));
+  watch_.placed(i);
   ++state_.bodies[i].version;
   state_.markMoved(i);
 }
@@ -181,9 +182,7 @@ void WorldModel::addDrag(BodyHandle body, double linear, double angular) {
 void WorldModel::setEnabled(BodyHandle body, bool on) {
   const Index i = bodies_[body];
   state_.bodies[i].awake = on;
-  if (!on) return;
-  watch_[i].idleStepsLeft = Watch{}.idleStepsLeft;
-  watch_[i].idleTimeLeft = 0;
+  if (on) watch_.woken(i);
 }
 
 void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
@@ -208,7 +207,6 @@ void WorldModel::setDamping(BodyHandle body, double linear, double angular) {
   if (b.linearDamping == linear && b.angularDamping == angular) return;
   b.linearDamping = linear;
   b.angularDamping = angular;
-  bodiesDamped_ |= linear > 0 || angular > 0;
   ++model_.dynamics;
 }
 
@@ -239,8 +237,8 @@ void WorldModel::saveBody(BodyHandle body, std::vector<double>& out) const {
     put(numbers, 4);
   }
   for (const Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) put(v->data(), 3);
-  const double rest[] = {double(s.awake), double(model_.bodies[i].gravity), double(watch_[i].idleStepsLeft),
-                         watch_[i].idleTimeLeft};
+  const double rest[] = {double(s.awake), double(model_.bodies[i].gravity), double(watch_.counters(i).idleStepsLeft),
+                         watch_.counters(i).idleTimeLeft};
   put(rest, 4);
 }
 
@@ -263,13 +261,11 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   }
   for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) take(v->data(), 3);
   ++s.version;
-  ++poses_;
+  ++data_.poses;
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
-  watch_[i].idleStepsLeft = static_cast<int>(*p++);
-  watch_[i].idleTimeLeft = *p;
-  watch_[i].validPosition = s.position;
-  watch_[i].validQuaternion = s.quaternion;
+  watch_.setCounters(i, {static_cast<int>(p[0]), p[1]});
+  watch_.placed(i);
   state_.markMoved(i);
 }
 
@@ -301,6 +297,11 @@ void WorldModel::destroyGeom(GeomHandle geom) {
 void WorldModel::markEdited(Index geom) {
   ++model_.collision;
   if (!std::exchange(geomEdited_[geom], 1)) edited_.push_back(geom);
+}
+
+void WorldModel::clearEdited() {
+  for (const Index g : edited_) geomEdited_[g] = 0;
+  edited_.clear();
 }
 
 void WorldModel::setShape(GeomHandle geom, const ShapeDescription& shape) {
@@ -363,7 +364,8 @@ void WorldModel::compact() {
   // Whoever keeps indices compares this version.
   if (bodies_.removed() + spaces_.removed() + geoms_.removed() + joints_.removed() > 0) ++model_.structure;
   if (bodies_.removed() > 0) {
-    const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies, watch_);
+    const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies);
+    watch_.renumber(now);
     for (engine::Geom& g : model_.geoms) remap(g.body, now);
     for (engine::Joint& j : model_.joints) remap(j.a, now), remap(j.b, now);
     remap(state_.moved, now);
@@ -375,9 +377,9 @@ void WorldModel::compact() {
   }
   if (geoms_.removed() > 0) remap(edited_, geoms_.compact(model_.geoms, model_.extensions.geoms, geomEdited_));
   if (joints_.removed() > 0) {
-    const std::vector<Index> now =
-        joints_.compact(model_.joints, model_.extensions.joints, model_.extensions.sceneJoints, state_.joints,
-                        state_.coordinates, state_.motors, motors_, angles_);
+    const std::vector<Index> now = joints_.compact(
+        model_.joints, model_.extensions.joints, model_.extensions.sceneJoints, state_.joints, state_.motors, motors_);
+    kinematics_.renumber(now);
     for (engine::AxisControl& c : state_.controls) remap(c.joint, now);
     std::erase_if(state_.controls, [](const engine::AxisControl& c) { return c.joint == kNone; });
     listControls();

@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <optional>
 
-#include "../../plugins/physics/world_model.h"
+#include "../../plugins/physics/stepper.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -41,6 +41,7 @@ struct EngineWorld : TestHost, engine::IContactSink {
   engine::IEngine* engine;
   engine::Capabilities can;
   physics::WorldModel world;
+  physics::Stepper stepper{world};
   physics::SpaceHandle space;
   engine::Contacts contacts;
   engine::Surface surface;  ///< of all contacts
@@ -148,16 +149,16 @@ struct EngineWorld : TestHost, engine::IContactSink {
   void detect() {
     if (can.late) return;
     contacts.clear();
-    world.detect(*engine, collision, nullptr, most, contacts);
+    stepper.detect(*engine, collision, nullptr, most, contacts);
     decide(contacts);
   }
   /// The step after detect().
-  void step() { world.step(*engine, contacts, dt, this); }
+  void step() { stepper.step(*engine, contacts, dt, this); }
   /// Finds the contacts: before a step, or in one of nearly no time.
   void touch() {
     detect();
     if (!can.late) return;
-    world.step(*engine, contacts, 1e-9, this);
+    stepper.step(*engine, contacts, 1e-9, this);
   }
   /// Steps the world. All contacts are solved.
   void run(double seconds) {

@@ -69,8 +69,8 @@ TEST_CASE("a hinge's angle and rate are those of the first body relative to the 
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.setAngularVelocity(p.child, {0, 0, 1});
     w.run(0.5);
-    CHECK(w.world.angle(j, 0) == Approx(0.5).margin(0.01));
-    CHECK(w.world.angleRate(j, 0) == Approx(1).margin(0.01));
+    CHECK(w.world.at(j).angle(0) == Approx(0.5).margin(0.01));
+    CHECK(w.world.at(j).angleRate(0) == Approx(1).margin(0.01));
   });
 }
 
@@ -81,20 +81,20 @@ TEST_CASE("a motor reaches its speed, has no more than its maximum force, and do
       const JointHandle j = w.joint(type, p.child, p.parent, {0, 0, 0.5});
       w.motor(j, 0, 1.5, 100);
       w.run(0.2);
-      CHECK(w.world.angleRate(j, 0) == Approx(1.5).epsilon(0.02));
+      CHECK(w.world.at(j).angleRate(0) == Approx(1.5).epsilon(0.02));
       w.stops(j, 0, -0.4, 0.8);
       w.run(2);
-      CHECK(w.world.angle(j, 0) == Approx(0.8).margin(0.02));
-      CHECK(w.world.atStop(j, 0));
+      CHECK(w.world.at(j).angle(0) == Approx(0.8).margin(0.02));
+      CHECK(w.world.at(j).atStop(0));
       w.motor(j, 0, -1.5, 100);
       w.run(2);
-      CHECK(w.world.angle(j, 0) == Approx(-0.4).margin(0.02));
+      CHECK(w.world.at(j).angle(0) == Approx(-0.4).margin(0.02));
     });
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.motor(j, 0, 100, 0.05);
     w.run(1);
-    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.02));  // 0.05 Nm for 1 s on 0.1 kg m^2
+    CHECK(w.world.at(j).angleRate(0) == Approx(0.5).epsilon(0.02));  // 0.05 Nm for 1 s on 0.1 kg m^2
   });
 }
 
@@ -105,8 +105,8 @@ TEST_CASE("a wheel rolls at its motor's speed, keeps a locked steering angle, an
     w.motor(j, 1, 3, 50);
     w.stops(j, 0, 0, 0);
     w.run(1);
-    CHECK(std::abs(w.world.angleRate(j, 1)) == Approx(3).epsilon(0.02));
-    CHECK(std::abs(w.world.angle(j, 0)) < 0.02);
+    CHECK(std::abs(w.world.at(j).angleRate(1)) == Approx(3).epsilon(0.02));
+    CHECK(std::abs(w.world.at(j).angle(0)) < 0.02);
     w.world.setParameter(j, JointParameter::suspensionErp, 0, 0.4);
     w.world.setParameter(j, JointParameter::suspensionCfm, 0, 0.05);
     w.world.addForce(wheel, {0, 0, 200});
@@ -121,8 +121,8 @@ TEST_CASE("an axis of a wheel that becomes parallel to the other moves it aside"
   withPairs([](EngineWorld& w, const Pair& p) {
     for (const int axis : {0, 1}) {
       const JointHandle j = w.joint(JointType::hinge2, p.child, p.parent, {0, 0, 0.5});
-      w.world.setAxis(j, axis, w.world.axis(j, 1 - axis), 0);
-      CHECK(std::abs(w.world.axis(j, 0).dot(w.world.axis(j, 1))) < 1e-9);
+      w.world.setAxis(j, axis, w.world.at(j).axis(1 - axis), 0);
+      CHECK(std::abs(w.world.at(j).axis(0).dot(w.world.at(j).axis(1))) < 1e-9);
       w.world.destroyJoint(j);
     }
   });
@@ -191,20 +191,20 @@ TEST_CASE("a controller moves its axis to the target with at most its maximum fo
       const JointHandle j = w.joint(type, p.child, p.parent, {0, 0, 0.5});
       w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = 0.4});
       w.run(4);
-      CHECK(w.world.angle(j, 0) == Approx(0.4).margin(0.002));
-      CHECK(std::abs(w.world.angleRate(j, 0)) < 0.005);
+      CHECK(w.world.at(j).angle(0) == Approx(0.4).margin(0.002));
+      CHECK(std::abs(w.world.at(j).angleRate(0)) < 0.005);
       w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = -0.3});
       w.run(4);
-      CHECK(w.world.angle(j, 0) == Approx(-0.3).margin(0.002));
+      CHECK(w.world.at(j).angle(0) == Approx(-0.3).margin(0.002));
     });
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.control(j, 0, {.stiffness = 1000, .position = 3, .maxForce = 0.05});
     w.run(1);
-    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.01));  // 0.05 Nm for 1 s on 0.1 kg m^2
+    CHECK(w.world.at(j).angleRate(0) == Approx(0.5).epsilon(0.01));  // 0.05 Nm for 1 s on 0.1 kg m^2
     w.world.control(j, 0, {.force = -0.05});
     w.run(1);
-    CHECK(std::abs(w.world.angleRate(j, 0)) < 0.005);
+    CHECK(std::abs(w.world.at(j).angleRate(0)) < 0.005);
   });
 }
 
@@ -214,17 +214,17 @@ TEST_CASE("damping slows an axis, dry friction holds it, and armature adds inert
     w.world.setParameter(j, JointParameter::damping, 0, 0.2);
     w.world.setAngularVelocity(p.child, {0, 0, 2});
     w.run(0.5);
-    CHECK(w.world.angleRate(j, 0) == Approx(2 * std::exp(-0.2 / 0.1 * 0.5)).epsilon(0.02));
+    CHECK(w.world.at(j).angleRate(0) == Approx(2 * std::exp(-0.2 / 0.1 * 0.5)).epsilon(0.02));
   });
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.setParameter(j, JointParameter::dryFriction, 0, 0.1);
     w.world.control(j, 0, {.force = 0.09});
     w.run(1);
-    CHECK(std::abs(w.world.angleRate(j, 0)) < 1e-3);
+    CHECK(std::abs(w.world.at(j).angleRate(0)) < 1e-3);
     w.world.control(j, 0, {.force = 0.15});
     w.run(1);
-    CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.02));
+    CHECK(w.world.at(j).angleRate(0) == Approx(0.5).epsilon(0.02));
   });
   withPairs(
       [](EngineWorld& w, const Pair& p) {
@@ -232,7 +232,7 @@ TEST_CASE("damping slows an axis, dry friction holds it, and armature adds inert
         w.world.setParameter(j, JointParameter::armature, 0, 0.3);
         w.world.control(j, 0, {.force = 0.2});
         w.run(1);
-        CHECK(w.world.angleRate(j, 0) == Approx(0.5).epsilon(0.01));  // 0.2 Nm for 1 s on 0.1 + 0.3 kg m^2
+        CHECK(w.world.at(j).angleRate(0) == Approx(0.5).epsilon(0.01));  // 0.2 Nm for 1 s on 0.1 + 0.3 kg m^2
       },
       {&engine::Capabilities::joints, &engine::Capabilities::armature});
 }
@@ -281,7 +281,7 @@ TEST_CASE("a controller moves each axis of a joint to the target, with either or
           w.world.control(j, 1 - axis, {.stiffness = 20, .damping = 4});
           w.world.control(j, axis, {.stiffness = 20, .damping = 4, .position = 0.3});
           w.run(4);
-          CHECK(w.world.angle(j, axis) == Approx(0.3).margin(0.02));
+          CHECK(w.world.at(j).angle(axis) == Approx(0.3).margin(0.02));
         });
 }
 
@@ -295,14 +295,14 @@ TEST_CASE("joints keep their positions when another body is created and destroye
         w.world.control(j, 0, {.stiffness = 20, .damping = 4, .position = 0.25});
         w.world.addForce(p.child, {0, 0, 3});
         w.run(3);
-        const double before = w.world.angle(j, 0);
+        const double before = w.world.at(j).angle(0);
         const Vec3 position = w.position(p.child);
         CHECK(before == Approx(0.25).margin(0.02));
         const BodyHandle other = w.body({9, 9, 9});
         w.run(w.dt);
         w.world.destroyBody(other);
         w.run(w.dt);
-        CHECK(w.world.angle(j, 0) == Approx(before).margin(1e-3));
+        CHECK(w.world.at(j).angle(0) == Approx(before).margin(1e-3));
         CHECK((w.position(p.child) - position).norm() < 1e-3);
       });
 }
@@ -310,7 +310,7 @@ TEST_CASE("joints keep their positions when another body is created and destroye
 TEST_CASE("an axis has one command: the last one counts") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
-    const auto rate = [&] { return w.run(1), w.world.angleRate(j, 0); };
+    const auto rate = [&] { return w.run(1), w.world.at(j).angleRate(0); };
     w.motor(j, 0, 1, 10);
     CHECK(rate() == Approx(1).epsilon(0.05));
     w.world.control(j, 0, {.damping = 10, .velocity = -2});
@@ -328,7 +328,7 @@ TEST_CASE("an axis has one command: the last one counts") {
 TEST_CASE("dry friction acts from the step in which it is set, and while no motor does") {
   withPairs([](EngineWorld& w, const Pair& p) {
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
-    const auto rate = [&] { return w.run(0.5), w.world.angleRate(j, 0); };
+    const auto rate = [&] { return w.run(0.5), w.world.at(j).angleRate(0); };
     for (const bool controlled : {false, true}) {
       CAPTURE(controlled);
       if (controlled) w.world.control(j, 0, {});
@@ -352,12 +352,12 @@ TEST_CASE(
     const JointHandle j = w.joint(JointType::hinge, p.child, p.parent, {0, 0, 0.5});
     w.world.control(j, 0, {.force = 0.1});
     w.run(0.5);
-    const double rate = w.world.angleRate(j, 0);
+    const double rate = w.world.at(j).angleRate(0);
     CHECK(rate == Approx(0.5).epsilon(0.05));
     w.world.setParameter(j, JointParameter::maxForce, 0, 0);
     CHECK(w.world.controlOf(j, 0) == nullptr);
     w.run(1);
-    CHECK(w.world.angleRate(j, 0) == Approx(rate).epsilon(0.05));
+    CHECK(w.world.at(j).angleRate(0) == Approx(rate).epsilon(0.05));
   });
   withPairs(
       [](EngineWorld& w, const Pair& p) {
@@ -388,8 +388,8 @@ TEST_CASE("the armature of a slider between two rotating bodies adds no energy")
         w.run(1);
         // Each is 0.5 m from the axis and accelerates outwards by 0.5 * 0.25 m/s^2. Their distance has an inertia of
         // 0.5 + 5 kg.
-        CHECK(std::abs(w.world.angle(j, 0)) < 0.03);
-        CHECK(std::abs(w.world.angleRate(j, 0)) < 0.06);
+        CHECK(std::abs(w.world.at(j).angle(0)) < 0.03);
+        CHECK(std::abs(w.world.at(j).angleRate(0)) < 0.06);
         CHECK(w.spin(a).y() == Approx(0.5).epsilon(0.05));
       },
       {&engine::Capabilities::joints, &engine::Capabilities::armature});

@@ -57,7 +57,7 @@ TEST_CASE("a ray hits the same geom as ODE's ray hits first, at the same distanc
     const Vec3 from = 5 * t.vector() + Vec3(0, 0, 6), direction = (t.vector() + Vec3(0, 0, 2) - from).normalized();
     t.world.setShape(probe, {.shape = Shape::ray, .length = 20, .rayOrigin = from, .rayDirection = direction});
     t.contacts.clear();
-    t.world.detect(*t.engine, t.collision, nullptr, 16, t.contacts);
+    t.stepper.detect(*t.engine, t.collision, nullptr, 16, t.contacts);
     const engine::Contact* first = nullptr;
     for (const engine::Contact& c : t.contacts)
       if ((c.geomA == t.world.index(probe) || c.geomB == t.world.index(probe)) && (!first || c.depth < first->depth))
@@ -101,7 +101,7 @@ TEST_CASE("a sphere overlaps the geoms that it touches in ODE") {
     const Vec3 at = 1.5 * t.vector() + Vec3(0, 0, 1.6);
     t.world.setPosition(ball, at);
     t.contacts.clear();
-    t.world.detect(*t.engine, t.collision, nullptr, 1, t.contacts);
+    t.stepper.detect(*t.engine, t.collision, nullptr, 1, t.contacts);
     std::vector<engine::Index> expected, found;
     for (const engine::Contact& c : t.contacts)
       if (c.geomA == t.world.index(probe) || c.geomB == t.world.index(probe))

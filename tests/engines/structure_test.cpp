@@ -111,10 +111,11 @@ TEST_CASE("a world may be destroyed before its engine, and an engine before the 
   withEngines([](EngineWorld& w) {
     {
       physics::WorldModel second;
+      physics::Stepper stepper(second);
       const BodyHandle b = second.createBody();
       engine::Contacts none;
-      second.detect(*w.engine, w.collision, nullptr, 4, none);
-      second.step(*w.engine, none, 0.01, &w);
+      stepper.detect(*w.engine, w.collision, nullptr, 4, none);
+      stepper.step(*w.engine, none, 0.01, &w);
       CHECK(second.state(b).position.z() < 0);
     }
     w.run(0.1);
@@ -163,7 +164,7 @@ TEST_CASE("contacts that are not to be solved exert no force, even if the world 
       w.detect();
       if (i == 5) w.world.setMass(other, {2, Vec3::Zero(), Mat3::Identity()});
       if (i == 10) w.world.setPosition(other, {6, 0, 0});
-      w.world.step(*w.engine, w.contacts, i < 15 ? w.dt : w.dt / 2, &w);
+      w.stepper.step(*w.engine, w.contacts, i < 15 ? w.dt : w.dt / 2, &w);
       REQUIRE_FALSE(w.contacts.empty());
     }
     CHECK(w.velocity(ghost).norm() < 1e-6);

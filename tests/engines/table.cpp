@@ -46,7 +46,7 @@ double overshoot(EngineWorld& w) {
   double farthest = 0;
   for (int i = 0; i < 200; ++i) {
     w.run(w.dt);
-    farthest = std::max(farthest, w.world.angle(j, 0) - 0.5);
+    farthest = std::max(farthest, w.world.at(j).angle(0) - 0.5);
   }
   return farthest;
 }

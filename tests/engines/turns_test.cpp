@@ -21,7 +21,7 @@ struct Rotor {
     }
     joint = w.joint(type, reversed ? parent : child, reversed ? child : parent, {0, 0, 0});
   }
-  double angle(int axis = 0) const { return w.world.angle(joint, axis); }
+  double angle(int axis = 0) const { return w.world.at(joint).angle(axis); }
   /// Turns the axis with a motor.
   void drive(double speed, double seconds, int axis = 0) {
     w.motor(joint, axis, speed, 50);
@@ -53,7 +53,7 @@ TEST_CASE("a hinge counts its turns in both directions") {
     CHECK(std::abs(there) == Approx(18).margin(0.5));
     r.drive(-6, 6);
     CHECK(r.angle() == Approx(there - std::copysign(36, there)).margin(0.7));
-    const double within = r.w.world.angleOfPoses(r.joint, 0);
+    const double within = r.w.world.at(r.joint).angleOfPoses(0);
     CHECK(std::abs(within) <= kPi + 1e-9);
     CHECK(std::remainder(r.angle() - within, 2 * kPi) == Approx(0).margin(1e-9));
   });
@@ -71,7 +71,7 @@ TEST_CASE("a stop holds at any angle and at any speed at which a step does not p
           r.drive(direction * speed, 2 * limit / speed + 2);
           CHECK(std::abs(r.angle()) == Approx(limit).margin(0.03));
           CHECK(std::abs(w.spin(r.child).z()) < 0.01);
-          CHECK(w.world.atStop(r.joint, 0));
+          CHECK(w.world.at(r.joint).atStop(0));
         }
       });
 }
@@ -146,7 +146,7 @@ TEST_CASE("a saved coordinate is restored with its turns, before or after the po
       CAPTURE(posesFirst);
       r.drive(6, 3);
       r.drive(0, 0.5);
-      const double angle = r.angle(), coordinate = w.world.coordinate(r.joint, 0);
+      const double angle = r.angle(), coordinate = w.world.at(r.joint).coordinate(0);
       std::vector<double> state;
       w.world.saveBody(r.child, state);
       r.drive(-5, 4);
@@ -197,12 +197,12 @@ TEST_CASE("the steering angle of a wheel and the angle of its rotation count tur
         w.motor(j, 0, 0, 50);
         w.motor(j, 1, 5, 50);
         w.run(3);
-        CHECK(std::abs(w.world.angle(j, 1)) == Approx(15).margin(0.5));
+        CHECK(std::abs(w.world.at(j).angle(1)) == Approx(15).margin(0.5));
         w.motor(j, 1, 0, 50);
         w.stops(j, 0, rad(-500), rad(500));
         w.motor(j, 0, 4, 50);
         w.run(4);
-        CHECK(std::abs(w.world.angle(j, 0)) == Approx(rad(500)).margin(0.05));
+        CHECK(std::abs(w.world.at(j).angle(0)) == Approx(rad(500)).margin(0.05));
       },
       {&engine::Capabilities::joints});
 }
@@ -223,10 +223,10 @@ TEST_CASE("an Euler motor counts the turns of its outer axes") {
         for (int axis = 0; axis < 3; ++axis) w.motor(j, axis, 0, 50);
         w.motor(j, 0, 5, 50);
         w.run(3);
-        CHECK(std::abs(w.world.angle(j, 0)) == Approx(15).margin(0.5));
+        CHECK(std::abs(w.world.at(j).angle(0)) == Approx(15).margin(0.5));
         w.stops(j, 0, rad(-1000), rad(1000));
         w.run(4);
-        CHECK(std::abs(w.world.angle(j, 0)) == Approx(rad(1000)).margin(0.05));
+        CHECK(std::abs(w.world.at(j).angle(0)) == Approx(rad(1000)).margin(0.05));
       },
       {&engine::Capabilities::joints, &engine::Capabilities::loops});
 }

@@ -66,7 +66,7 @@ struct OracleHost : test::EngineHost {
       contacts.clear();
       detect();
       for (auto& c : contacts) c.solve = c.feedback = true, c.surface = surface;
-      world.step(shadow, contacts, 0.02);
+      stepper.step(shadow, contacts, 0.02);
     }
   }
 };

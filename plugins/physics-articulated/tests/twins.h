@@ -7,7 +7,7 @@
 #include <catch2/catch.hpp>
 #include <random>
 
-#include "../../physics/world_model.h"
+#include "../../physics/stepper.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -22,12 +22,13 @@ struct Scene {
   engine::ICollision& collision;
   engine::IEngine* engine = nullptr;  ///< owned by the kernel
   physics::WorldModel world;
+  physics::Stepper stepper{world};
   physics::SpaceHandle space = world.createSpace(physics::SpaceHandle::none);
   engine::Contacts contacts;
   std::vector<physics::BodyHandle> bodies;
   std::vector<physics::JointHandle> joints;
   explicit Scene(engine::ICollision& c) : collision(c) {}
-  void step(double dt) { world.step(*engine, contacts, dt); }
+  void step(double dt) { stepper.step(*engine, contacts, dt); }
 };
 
 /// Largest differences between the two worlds. Velocities and feedback are relative to the largest in the world;
@@ -199,7 +200,7 @@ class Twins : public TestHost {
   /// Detects contacts and stores them in Scene::contacts.
   void detectContacts(Scene& s) {
     s.contacts.clear();
-    s.world.detect(*s.engine, &s.collision, nullptr, 4, s.contacts);
+    s.stepper.detect(*s.engine, &s.collision, nullptr, 4, s.contacts);
     for (auto& c : s.contacts) c.solve = c.feedback = true, c.surface = surface;
   }
   /// Copies the state of `plain` to `solved`.

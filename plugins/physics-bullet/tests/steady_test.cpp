@@ -22,7 +22,7 @@ TEST_CASE("a step of Bullet's allocates no memory of Spark's once the world has 
   int allocations = 0;
   for (int i = 0; i < 20; ++i) {
     w.detect();
-    allocations += Allocations::in([&] { w.world.step(*w.engine, w.contacts, w.dt); });
+    allocations += Allocations::in([&] { w.stepper.step(*w.engine, w.contacts, w.dt); });
   }
   CHECK(allocations == 0);
 }

@@ -4,7 +4,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "../../physics/world_model.h"
+#include "../../physics/stepper.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -13,6 +13,7 @@ struct EngineHost : TestHost {
   engine::ICollision& collision;
   engine::IEngine& engine;
   physics::WorldModel world;
+  physics::Stepper stepper{world};
   physics::SpaceHandle space;
   engine::Contacts contacts;
   explicit EngineHost(bool exactReplay = false)
@@ -44,14 +45,14 @@ struct EngineHost : TestHost {
   }
   /// Appends the detected contacts to `contacts`.
   void detect(int perPair = 4, engine::PairFilter filter = nullptr) {
-    world.detect(engine, &collision, filter, perPair, contacts);
+    stepper.detect(engine, &collision, filter, perPair, contacts);
   }
   /// Makes one step of dt [s]. All contacts are solved with `surface`.
   void step(double dt = 0.02, const engine::Surface& surface = {}) {
     contacts.clear();
     detect();
     for (auto& c : contacts) c.solve = true, c.surface = surface;
-    world.step(engine, contacts, dt);
+    stepper.step(engine, contacts, dt);
   }
   Vec3 position(physics::BodyHandle b) const { return world.state(b).position; }
 };

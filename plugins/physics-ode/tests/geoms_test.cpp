@@ -73,7 +73,7 @@ TEST_CASE("each solid rests on a plane and on each other solid for a second") {
       host.geom(shapeOf(second));
       for (int i = 0; i < 50; ++i) host.step();
       CHECK(host.position(b).z() == Approx(1.0).margin(0.06));
-      CHECK(host.world.repaired().empty());
+      CHECK(host.stepper.repaired().empty());
     }
 }
 
@@ -236,7 +236,7 @@ TEST_CASE("the contact forces of a resting body add up to its weight") {
     host.contacts.clear();
     host.detect(4);
     for (auto& c : host.contacts) c.solve = c.feedback = true;
-    host.world.step(host.engine, host.contacts, 0.02);
+    host.stepper.step(host.engine, host.contacts, 0.02);
   }
   for (const auto& c : host.contacts) sum += c.forceOnA.z();
   CHECK(sum == Approx(3 * 9.81).epsilon(0.01));

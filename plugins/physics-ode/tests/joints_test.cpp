@@ -53,14 +53,14 @@ TEST_CASE("a hinge rotates only about its axis; its angle and rate are of the fi
   Two two;
   const JointHandle j = two.joint(JointType::hinge);
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
-  CHECK(two.world.axis(j, 0).isApprox(Vec3(0, 0, 1)));
-  CHECK(two.world.anchor(j).isApprox(Vec3(0, 0, 0.5)));
+  CHECK(two.world.at(j).axis(0).isApprox(Vec3(0, 0, 1)));
+  CHECK(two.world.at(j).anchor().isApprox(Vec3(0, 0, 0.5)));
   two.world.setAngularVelocity(two.child, {0.5, 0, 1});
   two.run(50);
   CHECK(two.apart() < 1e-3);
   CHECK(std::abs(two.world.state(two.child).angularVelocity.x()) < 1e-3);
-  CHECK(two.world.angle(j, 0) == Approx(0.5).margin(0.02));
-  CHECK(two.world.angleRate(j, 0) == Approx(1).margin(0.02));
+  CHECK(two.world.at(j).angle(0) == Approx(0.5).margin(0.02));
+  CHECK(two.world.at(j).angleRate(0) == Approx(1).margin(0.02));
 }
 
 TEST_CASE("a hinge's motor drives it to its stop but not beyond") {
@@ -73,12 +73,12 @@ TEST_CASE("a hinge's motor drives it to its stop but not beyond") {
   two.world.setParameter(j, JointParameter::maxForce, 0, 100);
   two.world.setParameter(j, JointParameter::velocity, 0, 2);
   two.run(20);
-  CHECK(two.world.angle(j, 0) == Approx(0.4).margin(0.03));
+  CHECK(two.world.at(j).angle(0) == Approx(0.4).margin(0.03));
   two.run(100);
-  CHECK(two.world.angle(j, 0) == Approx(0.7).margin(0.02));
+  CHECK(two.world.at(j).angle(0) == Approx(0.7).margin(0.02));
   two.world.setParameter(j, JointParameter::velocity, 0, -2);
   two.run(200);
-  CHECK(two.world.angle(j, 0) == Approx(-0.3).margin(0.02));
+  CHECK(two.world.at(j).angle(0) == Approx(-0.3).margin(0.02));
 }
 
 TEST_CASE("driving a joint wakes its first body unless the speed is 0, and atStop detects a stop") {
@@ -88,7 +88,7 @@ TEST_CASE("driving a joint wakes its first body unless the speed is 0, and atSto
   two.world.setParameter(j, JointParameter::lowStop, 0, -0.5);
   two.world.setParameter(j, JointParameter::highStop, 0, 0.5);
   two.world.setParameter(j, JointParameter::maxForce, 0, 1000);
-  CHECK_FALSE(two.world.atStop(j, 0));
+  CHECK_FALSE(two.world.at(j).atStop(0));
   two.world.setEnabled(two.child, false);
   two.world.drive(j, 0, 0);
   CHECK_FALSE(two.world.enabled(two.child));
@@ -96,11 +96,11 @@ TEST_CASE("driving a joint wakes its first body unless the speed is 0, and atSto
   CHECK(two.world.enabled(two.child));
   CHECK(two.world.parameter(j, JointParameter::velocity, 0) == 2);
   two.run(50);
-  CHECK(two.world.atStop(j, 0));
-  CHECK_FALSE(two.world.atStop(j, 1));
+  CHECK(two.world.at(j).atStop(0));
+  CHECK_FALSE(two.world.at(j).atStop(1));
   two.world.drive(j, 0, -2);
   two.run(10);
-  CHECK_FALSE(two.world.atStop(j, 0));
+  CHECK_FALSE(two.world.at(j).atStop(0));
 }
 
 TEST_CASE("with exact replay, atStop compares angles in single-precision degrees") {
@@ -121,12 +121,12 @@ TEST_CASE("with exact replay, atStop compares angles in single-precision degrees
         Mat3 r;
         r << std::cos(yaw), -std::sin(yaw), 0, std::sin(yaw), std::cos(yaw), 0, 0, 0, 1;
         host.world.setRotation(foot, r);
-        const double angle = host.world.angle(j, 0);
+        const double angle = host.world.at(j).angle(0);
         REQUIRE(std::abs(angle - yaw) < 1e-6);
         const float deg = static_cast<float>(radToDeg(angle));
         const bool atStop = exact ? std::abs(deg) >= stop * 180 / kPi : std::abs(angle) >= stop;
-        CHECK(host.world.atStop(j, 0) == atStop);
-        if (std::abs(angle) < stop) ++inside, ignored += host.world.atStop(j, 0);
+        CHECK(host.world.at(j).atStop(0) == atStop);
+        if (std::abs(angle) < stop) ++inside, ignored += host.world.at(j).atStop(0);
       }
     CHECK(inside > 0);
     CHECK((ignored > 0) == exact);  // 75 degrees rounded to single precision are beyond the stop
@@ -140,7 +140,7 @@ TEST_CASE("a motor has at most its maximum force") {
   two.world.setParameter(j, JointParameter::maxForce, 0, 0.5);
   two.world.setParameter(j, JointParameter::velocity, 0, 100);
   two.run(100);
-  CHECK(two.world.angleRate(j, 0) == Approx(0.5).margin(0.01));  // 0.5 Nm for 1 s on 1 kg m^2
+  CHECK(two.world.at(j).angleRate(0) == Approx(0.5).margin(0.01));  // 0.5 Nm for 1 s on 1 kg m^2
 }
 
 TEST_CASE("each parameter of each axis returns the value that was set") {
@@ -181,10 +181,10 @@ TEST_CASE("a universal joint rotates about both of its axes but not about the th
   two.world.setAngularVelocity(two.child, {0.3, 0.2, 0.9});
   two.run(20);
   CHECK(two.apart() < 1e-2);
-  CHECK(std::abs(two.world.angle(j, 0)) > 0.02);
-  CHECK(std::abs(two.world.angle(j, 1)) > 0.02);
-  CHECK(std::abs(two.world.angleRate(j, 0)) > 0.1);
-  CHECK(std::abs(two.world.angleRate(j, 1)) > 0.05);
+  CHECK(std::abs(two.world.at(j).angle(0)) > 0.02);
+  CHECK(std::abs(two.world.at(j).angle(1)) > 0.02);
+  CHECK(std::abs(two.world.at(j).angleRate(0)) > 0.1);
+  CHECK(std::abs(two.world.at(j).angleRate(1)) > 0.05);
   CHECK(std::abs(two.world.state(two.child).angularVelocity.z()) < 0.05);
 }
 
@@ -201,9 +201,9 @@ TEST_CASE("a hinge2 steers about its first axis and spins about its second") {
   two.world.setParameter(j, JointParameter::lowStop, 0, 0);
   two.world.setParameter(j, JointParameter::highStop, 0, 0);
   two.run(100);
-  CHECK(std::abs(two.world.angleRate(j, 1)) == Approx(3).margin(0.05));
+  CHECK(std::abs(two.world.at(j).angleRate(1)) == Approx(3).margin(0.05));
   CHECK(std::abs(two.world.state(two.child).angularVelocity.x()) == Approx(3).margin(0.05));
-  CHECK(std::abs(two.world.angle(j, 0)) < 0.02);
+  CHECK(std::abs(two.world.at(j).angle(0)) < 0.02);
 }
 
 TEST_CASE("a slider slides along its axis to its stop and does not rotate") {
@@ -215,14 +215,14 @@ TEST_CASE("a slider slides along its axis to its stop and does not rotate") {
   two.world.setLinearVelocity(two.child, {0.5, 0, -1});
   two.world.setAngularVelocity(two.child, {0, 1, 0});
   two.run(20);
-  CHECK(two.world.angle(j, 0) == Approx(-0.2).margin(0.02));
-  CHECK(two.world.angleRate(j, 0) == Approx(-1).margin(0.05));
+  CHECK(two.world.at(j).angle(0) == Approx(-0.2).margin(0.02));
+  CHECK(two.world.at(j).angleRate(0) == Approx(-1).margin(0.05));
   CHECK(std::abs(two.position(two.child).x()) < 0.01);
   CHECK(two.world.state(two.child).angularVelocity.norm() < 0.01);
   double lowest = 0;
   for (int i = 0; i < 100; ++i) {
     two.run(1);
-    lowest = std::min(lowest, two.world.angle(j, 0));
+    lowest = std::min(lowest, two.world.at(j).angle(0));
   }
   CHECK(lowest == Approx(-0.5).margin(0.02));
 }
@@ -253,9 +253,9 @@ TEST_CASE("an angular motor drives its axes") {
   two.world.setParameter(j, JointParameter::maxForce, 0, 50);
   two.world.setParameter(j, JointParameter::velocity, 0, 1.5);
   two.world.setMotorAngle(j, 0, 0.25);
-  CHECK(two.world.angle(j, 0) == Approx(0.25));
+  CHECK(two.world.at(j).angle(0) == Approx(0.25));
   two.run(50);
-  CHECK(two.world.angleRate(j, 0) == Approx(1.5).margin(0.01));
+  CHECK(two.world.at(j).angleRate(0) == Approx(1.5).margin(0.01));
   CHECK(two.world.state(two.child).angularVelocity.z() == Approx(1.5).margin(0.01));
   CHECK_THROWS_WITH(two.world.setAngularMotor(j, 4, false), Catch::Contains("0 to 3"));
 }
@@ -289,16 +289,16 @@ TEST_CASE("a joint whose body is destroyed has no effect, and its values are 0")
                           JointType::fixed, JointType::angularMotor}) {
     const BodyHandle gone = two.body({0, 0, 0});
     const JointHandle j = two.world.createJoint(type);
-    CHECK(two.world.angle(j, 0) == 0);
+    CHECK(two.world.at(j).angle(0) == 0);
     two.world.setAnchor(j, {0, 0, 0});
     two.world.setAxis(j, 0, {0, 0, 1}, 1);
     two.world.setFixed(j);
     two.world.attach(j, gone, two.parent);
     two.world.destroyBody(gone);
-    CHECK(two.world.angle(j, 0) == 0);
-    CHECK(two.world.angleRate(j, 0) == 0);
-    CHECK(two.world.axis(j, 0).isZero(0));
-    CHECK(two.world.anchor(j).isZero(0));
+    CHECK(two.world.at(j).angle(0) == 0);
+    CHECK(two.world.at(j).angleRate(0) == 0);
+    CHECK(two.world.at(j).axis(0).isZero(0));
+    CHECK(two.world.at(j).anchor().isZero(0));
     two.step();
   }
   CHECK_THROWS_WITH(two.world.attach(two.world.createJoint(JointType::ball), two.child, two.child),
@@ -312,10 +312,10 @@ TEST_CASE("a wheel without a chassis is refused, and an axis is rotated away fro
   CHECK_THROWS_WITH(two.world.attach(j, BodyHandle::none, two.child), Catch::Contains("needs two bodies"));
   two.world.attach(j, two.child, two.parent);
   two.world.setAxis(j, 0, {0, 3, 0}, 0);  // the initial direction of the second axis
-  CHECK(two.world.axis(j, 0).isApprox(Vec3(0, 1, 0)));
-  CHECK(std::abs(two.world.axis(j, 1).y()) < 1e-9);
+  CHECK(two.world.at(j).axis(0).isApprox(Vec3(0, 1, 0)));
+  CHECK(std::abs(two.world.at(j).axis(1).y()) < 1e-9);
   two.world.setAxis(j, 1, {0, -2, 0}, 0);
-  CHECK(two.world.axis(j, 1).isApprox(Vec3(0, -1, 0)));
+  CHECK(two.world.at(j).axis(1).isApprox(Vec3(0, -1, 0)));
   two.world.setAxis(j, 0, {0, 0, 1}, 0);
   two.run(3);
 }

@@ -133,16 +133,16 @@ TEST_CASE("joint angles equal ODE's, for hinges bit for bit, with either order o
       world.setAxis(c, 0, u), dJointSetUniversalAxis1(universal, u.x(), u.y(), u.z());
       world.setAxis(c, 1, v), dJointSetUniversalAxis2(universal, v.x(), v.y(), v.z());
       put();
-      CHECK(world.angle(h, 0) == dJointGetHingeAngle(hinge));
-      CHECK(world.angle(s, 0) == Approx(dJointGetSliderPosition(slider)).margin(1e-12));
-      CHECK(world.angle(c, 0) == Approx(dJointGetUniversalAngle1(universal)).margin(1e-9));
-      CHECK(world.angle(c, 1) == Approx(dJointGetUniversalAngle2(universal)).margin(1e-9));
+      CHECK(world.at(h).angle(0) == dJointGetHingeAngle(hinge));
+      CHECK(world.at(s).angle(0) == Approx(dJointGetSliderPosition(slider)).margin(1e-12));
+      CHECK(world.at(c).angle(0) == Approx(dJointGetUniversalAngle1(universal)).margin(1e-9));
+      CHECK(world.at(c).angle(1) == Approx(dJointGetUniversalAngle2(universal)).margin(1e-9));
       dVector3 found;
       dJointGetHingeAxis(hinge, found);
-      CHECK((world.axis(h, 0) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
+      CHECK((world.at(h).axis(0) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
       dJointGetUniversalAxis1(universal, found);
-      CHECK((world.axis(c, 0) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
+      CHECK((world.at(c).axis(0) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
       dJointGetUniversalAxis2(universal, found);
-      CHECK((world.axis(c, 1) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
+      CHECK((world.at(c).axis(1) - Vec3(found[0], found[1], found[2])).norm() < 1e-12);
     }
 }

@@ -52,7 +52,7 @@ TEST_CASE("several threads can read states between steps") {
       std::vector<std::jthread> threads;
       for (double& h : heights)
         threads.emplace_back([&] {
-          h = host.world.state(a).position.z() + host.world.pose(g).position.z() + host.world.angle(joint, 0);
+          h = host.world.state(a).position.z() + host.world.pose(g).position.z() + host.world.at(joint).angle(0);
         });
     }
     for (double h : heights) CHECK(h == heights[0]);

@@ -1,5 +1,5 @@
 #include "joint_frames.h"
-#include "world_model.h"
+#include "joint_kinematics.h"
 
 // Turns of joints. The poses of two bodies say where a joint's axis is within one turn; how often it has turned is
 // counted here, after each step of the engine: an angle that jumps by more than half a turn has passed +-pi. So stops,
@@ -15,7 +15,6 @@
 namespace spark::physics {
 
 using engine::axesOf;
-using engine::DynamicState;
 using engine::Index;
 using engine::Joint;
 using engine::JointCoordinates;
@@ -48,36 +47,51 @@ bool isTurned(const JointCoordinates& c) { return c.turns != std::array<std::int
 
 }  // namespace
 
-void WorldModel::startCoordinates(const Joint& j) {
-  JointCoordinates& c = state_.coordinates[static_cast<std::size_t>(&j - model_.joints.data())];
-  state_.turned -= isTurned(c);
+void JointKinematics::add() {
+  state().coordinates.emplace_back();
+  cached_.emplace_back();
+}
+
+void JointKinematics::renumber(const std::vector<Index>& now) {
+  physics::renumber(state().coordinates, now);
+  physics::renumber(cached_, now);
+}
+
+void JointKinematics::restart(Index joint) {
+  JointCoordinates& c = state().coordinates[joint];
+  state().turned -= isTurned(c);
   c = {};
   turningAt_ = 0;
 }
 
-void WorldModel::setTurns(JointCoordinates& c, int axis, std::int32_t turns) {
-  state_.turned -= isTurned(c);
+void JointKinematics::setTurns(JointCoordinates& c, int axis, std::int32_t turns) {
+  state().turned -= isTurned(c);
   c.turns[axis] = turns;
-  state_.turned += isTurned(c);
+  state().turned += isTurned(c);
 }
 
-void WorldModel::listTurning() {
+void JointKinematics::listTurning() {
   turning_.clear();
-  state_.turned = 0;
-  for (Index i = 0; i < model_.joints.size(); ++i) {
-    state_.turned += isTurned(state_.coordinates[i]);
-    if (const Joint& j = model_.joints[i]; attached(j) && turningAxes(j) > 0)
+  state().turned = 0;
+  for (Index i = 0; i < model().joints.size(); ++i) {
+    state().turned += isTurned(state().coordinates[i]);
+    if (const Joint& j = model().joints[i]; attached(j) && turningAxes(j) > 0)
       turning_.push_back({i, j.a, j.b, turningAxes(j)});
   }
-  turningAt_ = model_.structure;
+  turningAt_ = model().structure;
   countedAt_ = 0;
 }
 
-void WorldModel::countTurns() {
-  const auto moves = [&](Index body) { return body != kNone && state_.bodies[body].awake; };
+void JointKinematics::begin() {
+  if (turningAt_ != model().structure) listTurning();
+  if (countedAt_ != world_.poses) countTurns();
+}
+
+void JointKinematics::countTurns() {
+  const auto moves = [&](Index body) { return body != kNone && state().bodies[body].awake; };
   for (const Turning& t : turning_) {
     if (!moves(t.a) && !moves(t.b)) continue;
-    JointCoordinates& c = state_.coordinates[t.joint];
+    JointCoordinates& c = state().coordinates[t.joint];
     for (int axis = 0; axis < t.axes; ++axis) {
       const double now = rawAngle(t.joint, axis);
       const std::int32_t turns = turnsAfter(c.angle[axis], c.turns[axis], now);
@@ -85,23 +99,23 @@ void WorldModel::countTurns() {
       if (turns != c.turns[axis]) setTurns(c, axis, turns);
     }
   }
-  countedAt_ = poses_;
+  countedAt_ = world_.poses;
 }
 
-std::int32_t WorldModel::turnsNow(Index joint, int axis, double raw) const {
-  const JointCoordinates& c = state_.coordinates[joint];
+std::int32_t JointKinematics::turnsNow(Index joint, int axis, double raw) const {
+  const JointCoordinates& c = state().coordinates[joint];
   return turnsAfter(c.angle[axis], c.turns[axis], raw);
 }
 
-WorldModel::AxisView WorldModel::viewOf(const Joint& j, int axis) const {
+JointKinematics::AxisView JointKinematics::viewOf(const Joint& j, int axis) const {
   if (!j.reversed) return {axis, 1};
   if (j.type == JointType::hinge) return {axis, -1};
   if (j.type == JointType::universal) return axis == 0 ? AxisView{1, 1} : AxisView{0, -1};
   return {axis, 1};
 }
 
-double WorldModel::angleOf(Index joint, int axis) const {
-  const Joint& j = model_.joints[joint];
+double JointKinematics::angle(Index joint, int axis) const {
+  const Joint& j = model().joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
   if (j.type == JointType::slider) return sliderPosition(j);
   if (axis >= turningAxes(j)) return axis < j.motor.axes ? j.motor.angle[axis] : 0;
@@ -111,26 +125,24 @@ double WorldModel::angleOf(Index joint, int axis) const {
   return view.sign * (turns == 0 ? raw : raw + 2 * kPi * turns);
 }
 
-double WorldModel::angle(JointHandle joint, int axis) const { return angleOf(joints_[joint], axis); }
-
-double WorldModel::angleOfPoses(JointHandle joint, int axis) const {
-  const Joint& j = of(joint);
+double JointKinematics::angleOfPoses(Index joint, int axis) const {
+  const Joint& j = model().joints[joint];
   if (axis < 0 || axis >= turningAxes(j) || !attached(j)) return angle(joint, axis);
   const AxisView view = viewOf(j, axis);
-  return view.sign * rawAngle(joints_[joint], view.axis);
+  return view.sign * rawAngle(joint, view.axis);
 }
 
-double WorldModel::coordinate(JointHandle joint, int axis) const {
-  const Joint& j = of(joint);
+double JointKinematics::coordinate(Index joint, int axis) const {
+  const Joint& j = model().joints[joint];
   if (axis < 0 || axis >= turningAxes(j) || !attached(j)) return 0;
-  const double raw = rawAngle(joints_[joint], axis);
-  return raw + 2 * kPi * turnsNow(joints_[joint], axis, raw);
+  const double raw = rawAngle(joint, axis);
+  return raw + 2 * kPi * turnsNow(joint, axis, raw);
 }
 
-void WorldModel::loadCoordinate(JointHandle joint, int axis, double angle) {
+void JointKinematics::load(Index joint, int axis, double angle) {
   // Far from +-pi turns are certain; near it the poses that are restored too decide.
-  if (axis < 0 || axis >= turningAxes(of(joint)) || !(std::abs(angle) < 1e9)) return;
-  JointCoordinates& c = state_.coordinates[joints_[joint]];
+  if (axis < 0 || axis >= turningAxes(model().joints[joint]) || !(std::abs(angle) < 1e9)) return;
+  JointCoordinates& c = state().coordinates[joint];
   setTurns(c, axis, static_cast<std::int32_t>(std::round(angle / (2 * kPi))));
   c.angle[axis] = angle - 2 * kPi * c.turns[axis];
 }

@@ -1,0 +1,101 @@
+#include "stepper.h"
+
+#include <algorithm>
+
+namespace spark::physics {
+
+using engine::DynamicState;
+using engine::Index;
+using engine::kNone;
+
+Stepper::Stepper(WorldModel& world) : world_(world), data_(world.data()), added_(data_, world.kinematics()) {}
+
+template <class Maker>
+template <class F>
+typename Maker::Part& Stepper::Compiled<Maker>::bring(Maker& maker, const engine::Model& model, std::uint64_t version,
+                                                      F&& compile) {
+  const bool fresh = attached.startsAnew(maker);
+  auto& made = attached.of(maker, model);
+  if (fresh) structure = part = UINT64_MAX;  // should the first compile() throw
+  if (structure == model.structure && part == version) return made;
+  compile(made);
+  structure = model.structure;
+  part = version;
+  return made;
+}
+
+engine::ISolver& Stepper::solver(engine::IEngine& engine) {
+  // One that detects contacts has geoms, too.
+  const engine::Capabilities can = engine.capabilities();
+  const std::uint64_t version = data_.model.dynamics + (can.findsContacts() ? data_.model.collision : 0);
+  if (engine_.attached.startsAnew(engine)) ownAt_ = {};
+  return engine_.bring(engine, data_.model, version, [&](engine::ISolver& s) { s.compile(data_.model, data_.state); });
+}
+
+void Stepper::bringOwn(engine::IDetector& detector) {
+  const std::pair now{data_.model.structure, data_.model.collision};
+  if (std::exchange(ownAt_, now) != now || !world_.edited().empty())
+    detector.compile(data_.model, data_.state, world_.edited());
+}
+
+void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
+                     engine::Contacts& out) {
+  world_.compact();
+  const auto compile = [&](engine::IDetector& d) { d.compile(data_.model, data_.state, world_.edited()); };
+  engine::IDetector* const own = engine.capabilities().detects ? solver(engine).detector() : nullptr;
+  if (own || (collision && !engine.capabilities().late)) {
+    engine::IDetector& detector =
+        own ? *own : collision_.bring(*collision, data_.model, data_.model.collision, compile);
+    if (own) bringOwn(*own);
+    detector.detect(data_.model, data_.state, filter, perPair, out);
+  }
+  world_.clearEdited();
+  for (const Index i : data_.state.moved) data_.state.bodies[i].moved = false;
+  data_.state.moved.clear();
+}
+
+void Stepper::keepForces(bool on) {
+  kept_.clear();
+  if (!on) return;
+  for (Index i = 0; i < data_.state.bodies.size(); ++i)
+    if (const DynamicState& s = data_.state.bodies[i]; s.awake && !(s.force.isZero(0) && s.torque.isZero(0)))
+      kept_.push_back({world_.handleOf(i), s.force, s.torque});
+}
+
+void Stepper::repeatForces() {
+  again_ = true;
+  for (const KeptForce& k : kept_) {
+    // A handler removed it, or it fell asleep, and would keep them.
+    const Index i = world_.index(k.body);
+    if (i == kNone || !data_.state.bodies[i].awake) continue;
+    data_.state.bodies[i].force += k.force;
+    data_.state.bodies[i].torque += k.torque;
+  }
+}
+
+void Stepper::step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink) {
+  world_.compact();
+  engine::ISolver& solver = Stepper::solver(engine);
+  const engine::Capabilities can = engine.capabilities();
+  engine::State& state = data_.state;
+  const bool first = !std::exchange(again_, false);
+  if (first) repaired_.clear();
+  if (std::none_of(state.bodies.begin(), state.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
+  // A step must not allocate.
+  wrong_.reserve(state.bodies.size());
+  repaired_.reserve(state.bodies.size());
+  // Sleep counts steps of the simulation.
+  if (first && data_.model.parameters.autoDisable && can.sleeps) world_.watch().putToSleep(contacts, dt);
+  added_.add(can, dt);
+  world_.kinematics().begin();
+  engine::Step step{data_.model, state, contacts, data_.rounded(dt), {}, sink};
+  if (can.late) step.contacts = {};
+  solver.step(step);
+  ++data_.poses;
+  wrong_.clear();
+  world_.watch().repair(wrong_);
+  for (const Index i : wrong_) repaired_.push_back(world_.handleOf(i));
+  world_.kinematics().countTurns();
+}
+
+}  // namespace spark::physics

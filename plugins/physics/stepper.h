@@ -1,0 +1,63 @@
+#pragma once
+/// \file
+/// Has engines find the contacts of a world and step it.
+
+#include "added_forces.h"
+#include "world_model.h"
+
+namespace spark::physics {
+
+/// Steps one world. It ends before the world does.
+class Stepper {
+ public:
+  explicit Stepper(WorldModel& world);
+  Stepper(const Stepper&) = delete;
+  Stepper& operator=(const Stepper&) = delete;
+
+  /// Detects contacts: see IDetector::detect(). `collision` is used unless the engine detects them itself; otherwise it
+  /// may be nullptr.
+  void detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
+              engine::Contacts& out);
+  /// Puts bodies that have been idle long enough to sleep, steps the world, and puts bodies whose state is no number or
+  /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
+  /// removed since.
+  /// `sink`: for an engine with Capabilities::late; `contacts` are then those of the step before.
+  void step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink = nullptr);
+  /// Keeps the forces and torques on the bodies, for a step of the simulation that has several of the engine's.
+  void keepForces(bool on);
+  /// Adds the kept ones again, before a further step of the engine.
+  void repeatForces();
+  /// The bodies that were put back after the last step. Valid until the next step of the simulation.
+  std::span<const BodyHandle> repaired() const { return repaired_; }
+
+ private:
+  /// What steps the model, or finds its contacts, and the versions of the model that it has compiled.
+  template <class Maker>
+  struct Compiled {
+    engine::Attached<Maker> attached;
+    std::uint64_t structure = 0, part = 0;
+    /// Calls compile(the part) unless it has this version. Returns the part.
+    template <class F>
+    typename Maker::Part& bring(Maker& maker, const engine::Model& model, std::uint64_t version, F&& compile);
+  };
+  engine::ISolver& solver(engine::IEngine& engine);
+  /// Compiles an engine's own detector where the model changed.
+  void bringOwn(engine::IDetector& detector);
+
+  WorldModel& world_;
+  WorldData& data_;
+  AddedForces added_;
+  Compiled<engine::ICollision> collision_;
+  Compiled<engine::IEngine> engine_;
+  std::pair<std::uint64_t, std::uint64_t> ownAt_;  ///< structure and collision that its own detector has
+  struct KeptForce {
+    BodyHandle body;
+    Vec3 force, torque;
+  };
+  std::vector<KeptForce> kept_;
+  bool again_ = false;  ///< the next step is a further one
+  std::vector<engine::Index> wrong_;
+  std::vector<BodyHandle> repaired_;
+};
+
+}  // namespace spark::physics
