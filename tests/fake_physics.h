@@ -17,6 +17,7 @@ class FakeBody : public SceneNode, public IRigidBody {
  public:
   static void describe(Description<FakeBody>& d) { d.implements<IRigidBody>(); }
   Leaf& leaf() override { return *this; }
+  std::uint64_t identity() const override { return 0; }
   engine::BodyState state() const override { return now; }
   double mass() const override { return 1; }
   void setPose(const Pose& pose) override { now.position = pose.position, now.rotation = pose.rotation; }
@@ -44,6 +45,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
     d.implements<IMotor>();
   }
   Leaf& leaf() override { return *this; }
+  std::uint64_t identity() const override { return 0; }
   engine::JointType jointType() const override { return type; }
   IRigidBody* body(int index) const override { return bodies[index]; }
   int axes() const override { return 1; }

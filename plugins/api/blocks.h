@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "spark/abi/api/blocks.h"
@@ -56,12 +57,13 @@ class Blocks {
       if (b.kind == Block::kindOf<T>(number)) return b.as<T>();
     return {};
   }
-  /// Those of a type with numbers below `numbers`, in the order in which they were set.
+  /// Those of a type with numbers below `numbers`, each with its number, in the order in which they were set.
   template <class T>
-  std::vector<T> all(std::uint64_t numbers) const {
-    std::vector<T> out;
+  std::vector<std::pair<int, T>> all(int numbers) const {
+    std::vector<std::pair<int, T>> out;
     for (const Block& b : blocks_)
-      if (b.kind - kindOf(T::kKind) < numbers) out.push_back(b.as<T>());
+      if (const std::uint64_t number = b.kind - kindOf(T::kKind); number < static_cast<std::uint64_t>(numbers))
+        out.emplace_back(static_cast<int>(number), b.as<T>());
     return out;
   }
   void set(const Block& block) {

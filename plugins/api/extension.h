@@ -37,6 +37,21 @@ class IExtended {
   virtual void removeBlock(std::uint64_t kind) = 0;
 };
 
+/// The world of a scene: it takes the blocks of what belongs to no single element.
+class IExtendedWorld {
+ public:
+  SPARK_INTERFACE(IExtendedWorld, 1);
+  virtual ~IExtendedWorld() = default;
+  virtual IExtended& blocks() = 0;
+};
+
+/// The world of the scene that a node is in; nullptr: there is none.
+inline IExtended* worldAround(const Leaf& node) {
+  for (const Node* up = node.parent(); up; up = up->parent())
+    if (auto* world = up->childOf<IExtendedWorld>()) return &world->blocks();
+  return nullptr;
+}
+
 /// A node with a block.
 class IExtension {
  public:
@@ -47,7 +62,7 @@ class IExtension {
   virtual std::uint64_t kind() const = 0;
 };
 
-/// Base of nodes with a block of type T, for the element above them. See the file comment.
+/// Base of nodes with a block of type T, for the element above them, or another one (element()). See the file comment.
 template <class T>
 class Extension : public Leaf, public IExtension {
  public:
@@ -67,6 +82,8 @@ class Extension : public Leaf, public IExtension {
  protected:
   /// Which of several blocks of this kind in one element it is.
   virtual int number() const { return 0; }
+  /// The element that takes the block: the node above.
+  virtual IExtended* element() { return parent() ? parent()->template as<IExtended>() : Found<IExtended>(); }
   /// Passes the numbers to the element; before the node is linked it does nothing.
   void pass() {
     if (above_) above_->setBlock(Block::of(numbers_, number()));
@@ -77,10 +94,12 @@ class Extension : public Leaf, public IExtension {
   }
   void onLink() override {
     Leaf::onLink();
-    above_ = parent() ? parent()->template as<IExtended>() : Found<IExtended>();
+    above_ = element();
     if (!above_)
       throw Error(
-          fmt::format("{}: expected a World, a collider or a joint above it: it holds numbers of that", path()));
+          fmt::format("{}: expected a World, a collider or a joint above it: it holds numbers of that, or of the "
+                      "world of its scene",
+                      path()));
     pass();
   }
   void onUnlink() override {

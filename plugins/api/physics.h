@@ -19,10 +19,12 @@ namespace spark {
 /// controller.
 class IRigidBody {
  public:
-  SPARK_INTERFACE(IRigidBody, 2);
+  SPARK_INTERFACE(IRigidBody, 3);
   virtual ~IRigidBody() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
+  /// Body::id in the model of its world; 0: it is in none.
+  virtual std::uint64_t identity() const = 0;
   /// The current state in the engine; after the physics phase that of the new step.
   virtual engine::BodyState state() const = 0;
   /// kg.
@@ -60,10 +62,12 @@ inline Route<IRigidBody> BodyAround() {
 /// A joint, for sensors and effectors. Offered by HingeJoint and all other joint classes.
 class IJoint {
  public:
-  SPARK_INTERFACE(IJoint, 5);
+  SPARK_INTERFACE(IJoint, 6);
   virtual ~IJoint() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
+  /// Joint::id in the model of its world; 0: it is in none.
+  virtual std::uint64_t identity() const = 0;
   virtual engine::JointType jointType() const = 0;
   /// Body 0 (child link) or 1 (parent link); nullptr: the static world.
   virtual IRigidBody* body(int index) const = 0;

@@ -72,7 +72,7 @@ struct JointCall {
   Place a, b;                     ///< of the bodies of the joint; of the world its origin
   /// Of the block of a call.
   int numberOf() const { return static_cast<int>(kind == setAxis || kind == setAngle ? 3 * kind + axis : 3 * kind); }
-  static constexpr std::uint64_t kNumbers = 15;
+  static constexpr int kNumbers = 15;
 };
 
 }  // namespace spark::engine

@@ -1,5 +1,3 @@
-#include "mjcf.h"
-
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -8,6 +6,7 @@
 #include <iterator>
 
 #include "api/scene_joint.h"
+#include "mjcf_constraints.h"
 
 namespace spark::mujoco {
 
@@ -101,6 +100,7 @@ std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia, const Mat3& wanted) {
 struct Writer {
   const Model& model;
   const Trees& trees;
+  const Constraints& constraints;
   double step;  // s
   std::string out;
   std::vector<std::vector<Index>> children, geoms;  // by link; by body
@@ -311,6 +311,7 @@ struct Writer {
     putInertial(b, parts.front());
     for (const std::size_t i : chain) putJoint(trees.links[i]);
     putGeoms(link.body, 0, parts.size());
+    out += constraints.sites(link.body);
     for (std::size_t part = 1; part < parts.size(); ++part) {
       put(R"(<body name="{}">)", partName(link.body, part));
       putInertial(b, parts[part]);
@@ -355,8 +356,9 @@ bool hasOwnDrag(const Model& model) {
   return (o.density > 0 || o.viscosity > 0) && o.integrator == 0;
 }
 
-std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes) {
-  Writer w{model, trees, step, {}, {}, {}};
+std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes,
+                   const Constraints& constraints) {
+  Writer w{model, trees, constraints, step, {}, {}, {}};
   w.children.resize(trees.links.size());
   for (Index i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent != kNone) w.children[trees.links[i].parent].push_back(i);
@@ -379,10 +381,12 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
   w.put("<worldbody>\n");
   for (Index i = 0; i < model.geoms.size(); ++i)
     if (model.geoms[i].body == kNone) w.putGeom(i);
+  w.out += constraints.sites(kNone);
   for (std::size_t i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent == kNone) w.putLink(i);
   w.put("</worldbody>\n");
   if (hasActuators(model)) putActuators(w);
+  w.out += constraints.text();
   w.put("</mujoco>\n");
   return std::move(w.out);
 }

@@ -30,6 +30,8 @@ struct Trees {
   void mergeConnectors(const engine::Model& model);
 };
 
+class Constraints;
+
 /// Sizes of MuJoCo's buffers, which 2.2.2 has to be told.
 struct Sizes {
   int contacts = 100, rows = 500;
@@ -58,6 +60,7 @@ OptionNumbers optionsOf(const engine::Model& model);
 bool hasActuators(const engine::Model& model);
 
 /// The text. `step`: length of a step [s].
-std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes);
+std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes,
+                   const Constraints& constraints);
 
 }  // namespace spark::mujoco

@@ -13,4 +13,4 @@ void MujocoEngine::report(const std::string& message) {
 }  // namespace spark
 
 SPARK_PLUGIN("physics-mujoco", "1.0", "MuJoCo: contacts and dynamics in coordinates of joints.", spark::MujocoEngine,
-             spark::MujocoOptions, spark::MujocoSurface, spark::MujocoAxis)
+             spark::MujocoOptions, spark::MujocoSurface, spark::MujocoAxis, spark::MujocoEquality, spark::MujocoTendon)

@@ -3,6 +3,7 @@
 /// MuJoCo as an engine of the physics server.
 
 #include "api/phases.h"
+#include "mujoco_constraints.h"
 #include "mujoco_nodes.h"
 #include "mujoco_solver.h"
 #include "spark/describe.h"
@@ -45,7 +46,9 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   engine::Capabilities capabilities() const override { return kCapabilities; }
   bool reads(std::uint64_t kind) const override {
     return kind == engine::kindOf(mujoco::SurfaceNumbers::kKind) ||
-           kind == engine::kindOf(mujoco::AxisNumbers::kKind) || kind == engine::kindOf(mujoco::OptionNumbers::kKind);
+           kind == engine::kindOf(mujoco::AxisNumbers::kKind) || kind == engine::kindOf(mujoco::OptionNumbers::kKind) ||
+           kind == engine::kindOf(mujoco::EqualityNumbers::kKind) ||
+           kind == engine::kindOf(mujoco::TendonNumbers::kKind);
   }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<mujoco::MujocoSolver>(*this);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "mjcf_constraints.h"
 #include "mujoco_engine.h"
 
 namespace spark::mujoco {
@@ -52,12 +53,23 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   abandon();
   world_.reset();
   Trees trees(model, state);
-  const std::string text = toMjcf(model, trees, step_, sizes_);
+  const std::string text = textOf(model, trees);
   try {
     begin(model, std::move(trees), compileWorld(text));
   } catch (const Error& e) {
     refuse(e.what());
   }
+}
+
+std::string MujocoSolver::textOf(const engine::Model& model, const Trees& trees) {
+  const Constraints constraints(model, trees);
+  if (const int n = constraints.skipped(); n > std::exchange(skipped_, n))
+    engine_.kernel().log().warning(
+        "{}: {} of the world name bodies or joints that are not there, or that MuJoCo has not as one coordinate; they "
+        "have "
+        "no effect",
+        engine_.path(), n == 1 ? "1 equality or tendon" : fmt::format("{} equalities or tendons", n));
+  return toMjcf(model, trees, step_, sizes_, constraints);
 }
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
@@ -76,7 +88,7 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.waited = waited;
   p.stepsLeft = stepsToCompile(model.bodies.size());
   p.trees.emplace(model, state);
-  p.compiled = std::async(std::launch::async, compileAside, toMjcf(model, *p.trees, step_, sizes_), engine_.isPaced());
+  p.compiled = std::async(std::launch::async, compileAside, textOf(model, *p.trees), engine_.isPaced());
 }
 
 void MujocoSolver::abandon() {

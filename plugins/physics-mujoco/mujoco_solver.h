@@ -42,12 +42,14 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   /// After a step: the model that was compiled aside takes over when its time has come.
   void takePending(const engine::Model& model);
   void refuse(const std::string& why);
+  std::string textOf(const engine::Model& model, const Trees& trees);
 
   LibraryGuard library_;
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   Sizes sizes_;
   double step_ = 0.005;  ///< s
+  int skipped_ = 0;      ///< constraints that the last text leaves out
   bool full_ = false;    ///< no more room can be had
   std::string refused_;  ///< why the last model that was refused was
   Pending pending_;

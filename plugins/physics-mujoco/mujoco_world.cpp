@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "api/joined_bodies.h"
+#include "mjcf_constraints.h"
 
 namespace spark::mujoco {
 
@@ -61,6 +62,7 @@ Compiled compileWorld(const std::string& mjcf, bool ahead) {
 
 MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
     : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)) {
+  placeConstraints(model, *m_);
   linkOrigins_.resize(static_cast<std::size_t>(m_->nbody), Vec3::Zero());
   hasParts_.resize(static_cast<std::size_t>(m_->nbody), 0);
   const auto id = [](const std::unordered_map<std::string, int>& numbers, const std::string& name) {

@@ -199,7 +199,12 @@ std::vector<JointCall> callsOf(const engine::Joint& from) {
 
 /// The calls that set a joint; none if it was never set.
 std::vector<JointCall> callsFor(const Model& model, Index joint) {
-  if (model.exactReplay) return model.extensions.sceneJoints[joint].all<JointCall>(JointCall::kNumbers);
+  if (model.exactReplay) {
+    std::vector<JointCall> calls;
+    for (const auto& [number, call] : model.extensions.sceneJoints[joint].all<JointCall>(JointCall::kNumbers))
+      calls.push_back(call);
+    return calls;
+  }
   const engine::Joint& from = model.joints[joint];
   return from.setAt == 0 || from.a == kNone ? std::vector<JointCall>{} : callsOf(from);
 }

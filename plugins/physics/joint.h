@@ -16,6 +16,7 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   static void describe(Description<Joint>& d);
 
   Leaf& leaf() override { return *this; }
+  std::uint64_t identity() const override { return world() ? world()->model().joints[world()->index(joint_)].id : 0; }
   IRigidBody* body(int index) const override { return bodies_[index == 0 ? 0 : 1].get(); }
   int axes() const override;
   Vec3 anchor() const override { return world() ? world()->at(joint_).anchor() : Vec3(Vec3::Zero()); }

@@ -118,6 +118,8 @@ void RigidBody::onUnlink() {
   Body::onUnlink();
 }
 
+std::uint64_t RigidBody::identity() const { return world_ ? world_->model().bodies[world_->index(body_)].id : 0; }
+
 engine::BodyState RigidBody::state() const {
   if (world_) return world_->state(body_);
   const Pose p = physics::frameOf(*this);

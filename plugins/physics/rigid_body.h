@@ -25,6 +25,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   static void describe(Description<RigidBody>& d);
 
   Leaf& leaf() override { return *this; }
+  std::uint64_t identity() const override;
   engine::BodyState state() const override;
   double mass() const override { return mass_.mass; }
   void setPose(const Pose& pose) override;

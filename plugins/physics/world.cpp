@@ -28,6 +28,7 @@ Pose physics::poseFrom(const std::vector<double>& n) {
 void World::describe(Description<World>& d) {
   d.doc("The physical world of a scene: gravity and the solver's parameters.");
   d.implements<engine::IExtended>();
+  d.implements<engine::IExtendedWorld>();
   d.property("gravity", &World::gravity, &World::setGravity)
       .unit("m/s^2")
       .state()

@@ -23,7 +23,7 @@ class PhysicsObject : public SceneNode {
 };
 
 /// The physical world of a scene, its child `world`: gravity and the solver's parameters.
-class World : public PhysicsObject, public engine::IExtended {
+class World : public PhysicsObject, public engine::IExtended, public engine::IExtendedWorld {
   SPARK_CLASS(World, PhysicsObject)
  public:
   static void describe(Description<World>& d);
@@ -44,6 +44,7 @@ class World : public PhysicsObject, public engine::IExtended {
   bool takeRecentred() { return std::exchange(recentred_, false); }
   void setBlock(const engine::Block& block) override;
   void removeBlock(std::uint64_t kind) override;
+  engine::IExtended& blocks() override { return *this; }
 
  protected:
   void onLink() override;

@@ -94,7 +94,7 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
   if (hasAnchor(j.type)) anchorSet(j, j.reversed ? j.inB.anchor : pointToWorld(first, j.inA.anchor));
   if (j.setAt == 0) return;
   // The calls that would give the joint these numbers.
-  for (int number = 0; model_.exactReplay && number < static_cast<int>(JointCall::kNumbers); ++number)
+  for (int number = 0; model_.exactReplay && number < JointCall::kNumbers; ++number)
     model_.extensions.sceneJoints[joints_[joint]].remove(Block::kindOf<JointCall>(number));
   if (hasAnchor(j.type)) remember(j, JointCall::anchor, 0, pointToWorld(first, j.inA.anchor));
   for (int axis = 0; axis < axesOf(j.type); ++axis)

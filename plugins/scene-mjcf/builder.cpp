@@ -4,6 +4,7 @@
 
 #include "actuator_builder.h"
 #include "body_builder.h"
+#include "constraint_builder.h"
 #include "construction.h"
 #include "geom_builder.h"
 #include "sensor_builder.h"
@@ -37,6 +38,7 @@ void Builder::build(Node& root) {
     if (prefix_.empty()) c.flags = model_.flags;
     BodyBuilder(c).build();
     GeomBuilder(c).build();
+    ConstraintBuilder(c).build();
     ActuatorBuilder(c).build();
     SensorBuilder(c).build();
     withoutParts_ = c.withoutParts;

@@ -5,17 +5,18 @@
 
 namespace spark::mjcf {
 
+bool provides(Kernel& kernel, const char* className) {
+  if (kernel.findClass(className)) return true;
+  const Plugin* const provider = kernel.plugins().providerOf(className);
+  if (provider) kernel.plugins().use(provider->name());
+  return provider;
+}
+
 Leaf* extensionOf(Leaf& element, const char* className) {
   constexpr const char* kName = "mujoco";
-  Kernel& kernel = element.kernel();
   Node& node = *element.asNode();
   if (Leaf* const there = node.child(kName)) return there;
-  if (!kernel.findClass(className)) {
-    const Plugin* const provider = kernel.plugins().providerOf(className);
-    if (!provider) return nullptr;
-    kernel.plugins().use(provider->name());
-  }
-  return &node.create(className, kName);
+  return provides(element.kernel(), className) ? &node.create(className, kName) : nullptr;
 }
 
 Node& Construction::transform(Node& parent, const std::string& name, const Pose& local) {

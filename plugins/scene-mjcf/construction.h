@@ -36,6 +36,9 @@ struct Construction {
   bool withoutParts = false;  ///< has() found no class for a sensor or an actuator
 };
 
+/// True if there is a class of this name; the plugin that provides it is used from now on.
+bool provides(Kernel& kernel, const char* className);
+
 /// The child `mujoco` of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin provides its
 /// class.
 Leaf* extensionOf(Leaf& element, const char* className);

@@ -159,9 +159,9 @@ std::vector<std::string> Unsupported::sentences() const {
 // ---- attributes ----
 
 Attributes::Attributes(const Element& e, const Defaults& defaults, const std::string& className,
-                       Unsupported& unsupported)
+                       Unsupported& unsupported, std::string_view tag)
     : element_(e), chain_{e}, unsupported_(unsupported) {
-  const std::string_view tags[] = {e.tag()};
+  const std::string_view tags[] = {tag.empty() ? e.tag() : tag};
   defaults.forEach(e, tags, className, [&](const Element& d) { chain_.push_back(d); });
 }
 

@@ -108,8 +108,9 @@ class Unsupported {
 /// The attributes of an element, with those of its default classes. What is read is known; finish() names the others.
 class Attributes {
  public:
-  /// `className` "": the default class of the whole model.
-  Attributes(const Element& e, const Defaults& defaults, const std::string& className, Unsupported& unsupported);
+  /// `className` "": the default class of the whole model. `tag`: of the elements that hold its defaults; "": its own.
+  Attributes(const Element& e, const Defaults& defaults, const std::string& className, Unsupported& unsupported,
+             std::string_view tag = "");
   /// Of the element alone.
   Attributes(const Element& e, Unsupported& unsupported) : element_(e), chain_{e}, unsupported_(unsupported) {}
   const Element& element() const { return element_; }

@@ -104,6 +104,42 @@ struct Sensor {
   std::string reference;           ///< the object in whose frame it senses; "": the world
 };
 
+/// Bodies that are held together, or joints whose coordinates depend on each other (MuJoCo's documentation,
+/// "equality").
+struct Equality {
+  Element from;
+  std::string type, name;                                   ///< connect, weld or joint
+  std::string first, second;                                ///< bodies, or joints; second "": none
+  Vec3 anchor = Vec3::Zero();                               ///< connect: in the first body; weld: in the second
+  std::array<double, 7> relativePose{0, 1, 0, 0, 0, 0, 0};  ///< weld: of the second in the first; rotation 0: as placed
+  double torqueScale = 1;
+  std::array<double, 5> polynomial{0, 1, 0, 0, 0};
+  std::array<double, 2> solref{0.02, 1};
+  std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};
+  bool active = true;
+};
+
+/// A joint or a site that a tendon goes along.
+struct TendonPart {
+  Element from;
+  std::string name;
+  double coefficient = 1;  ///< of a joint
+};
+/// A tendon (MuJoCo's documentation, "tendon").
+struct Tendon {
+  Element from;
+  std::string name;
+  bool spatial = false;  ///< its parts are sites
+  std::vector<TendonPart> parts;
+  double stiffness = 0, damping = 0, frictionLoss = 0;
+  double springLength = -1;  ///< -1: that in the pose of the file
+  bool limited = false;
+  std::array<double, 2> range{0, 0};
+  double margin = 0;
+  std::array<double, 2> limitSolref{0.02, 1}, frictionSolref{0.02, 1};
+  std::array<double, 5> limitSolimp{0.9, 0.95, 0.001, 0.5, 2}, frictionSolimp{0.9, 0.95, 0.001, 0.5, 2};
+};
+
 /// Two bodies that do not collide.
 struct Exclusion {
   Element from;
@@ -126,7 +162,8 @@ struct Option {
 
 /// The flags of the element `option` that change how the model moves.
 struct Flags {
-  bool contact = true, limit = true, frictionLoss = true, passive = true, actuation = true, clampControl = true;
+  bool contact = true, limit = true, frictionLoss = true, passive = true, actuation = true, clampControl = true,
+       equality = true;
 };
 
 /// A whole model. bodies[0] is the world; parents come before their children.
@@ -137,6 +174,8 @@ struct Model {
   std::vector<Body> bodies;
   std::vector<Actuator> actuators;
   std::vector<Sensor> sensors;
+  std::vector<Equality> equalities;
+  std::vector<Tendon> tendons;
   std::vector<Exclusion> exclusions;
   std::vector<Pair> pairs;
   std::set<std::string, std::less<>> unsupportedGeoms;  ///< names of geoms that cannot collide

@@ -53,7 +53,8 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
   f.passive = f.passive && on("passive");
   f.actuation = f.actuation && on("actuation");
   f.clampControl = f.clampControl && on("clampctrl");
-  if (!on("constraint")) f.contact = f.limit = f.frictionLoss = false;
+  f.equality = f.equality && on("equality");
+  if (!on("constraint")) f.contact = f.limit = f.frictionLoss = f.equality = false;
   const auto set = [&](const char* property, Value v, bool ofMujoco = false) {
     model.options.push_back({e, property, std::move(v), ofMujoco});
   };
@@ -67,7 +68,7 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
   for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
     refuse(name, on(name, "disable"), "enable");
   // Without effect here: there is nothing that they switch, or results are the same.
-  a.ignore({"equality", "warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
+  a.ignore({"warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
   a.finish();
 }
 

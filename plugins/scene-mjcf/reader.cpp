@@ -14,8 +14,8 @@ namespace spark::mjcf {
 namespace {
 
 /// The sections that are read, in this order.
-constexpr std::string_view kSections[] = {"compiler",  "default", "option",   "asset",
-                                          "worldbody", "contact", "actuator", "sensor"};
+constexpr std::string_view kSections[] = {"compiler", "default",  "option", "asset",    "worldbody",
+                                          "contact",  "equality", "tendon", "actuator", "sensor"};
 /// Elements that say how MuJoCo's own programs show a model, or hold what is no part of it.
 const std::set<std::string_view> kNotSimulated{"visual", "statistic", "custom", "size", "keyframe", "camera", "light"};
 
@@ -74,6 +74,8 @@ void Reader::section(const Element& e) {
         asset(child);
       else if (tag == "contact")
         contact(child);
+      else if (tag == "equality" || tag == "tendon")
+        constraint(child, tag == "tendon");
       else if (tag == "actuator")
         actuator(child);
       else
@@ -366,6 +368,14 @@ void Reader::contact(const Element& e) {
     model_.pairs.push_back({e, a.text("geom1"), a.text("geom2")});
   a.ignore({"name"});
   a.finish();
+}
+
+void Reader::constraint(const Element& e, bool tendon) {
+  count(e);
+  if (!tendon) return constraints_.equality(e, model_);
+  const std::vector<Element> parts = document_.children(e);
+  for (const Element& part : parts) count(part);
+  constraints_.tendon(e, parts, model_);
 }
 
 void Reader::actuator(const Element& e) {

@@ -4,6 +4,7 @@
 
 #include "actuator_reader.h"
 #include "compiler.h"
+#include "constraint_reader.h"
 #include "geom_reader.h"
 #include "meshes.h"
 #include "model.h"
@@ -47,6 +48,7 @@ class Reader {
   void scaleMasses();
   void notePairs(const Element& e);
   void contact(const Element& e);
+  void constraint(const Element& e, bool tendon);
   void actuator(const Element& e);
   void sensor(const Element& e);
 
@@ -58,6 +60,7 @@ class Reader {
   Meshes meshes_;
   GeomReader geoms_{compiler_, meshes_, unsupported_};
   ActuatorReader actuators_{compiler_, defaults_, unsupported_};
+  ConstraintReader constraints_{compiler_, defaults_, unsupported_};
   std::vector<Pose> globalPoses_;  ///< of bodies, with global coordinates
   std::size_t elements_ = 0;
 };

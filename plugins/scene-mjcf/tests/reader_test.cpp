@@ -82,11 +82,11 @@ TEST_CASE("an unsupported element or attribute is reported once, with its first 
   const Read r(
       "<mujoco><worldbody>\n<body colour='red'><joint/><geom size='1' rgba='1 1 1 1' wings='1'/><geom size='1' "
       "wings='1'/></body>\n"
-      "</worldbody><tendon/><keyframe/></mujoco>");
+      "</worldbody><extension/><keyframe/></mujoco>");
   CHECK(r.messages() ==
         "a.xml:2:1: the attribute 'colour' of <body> is not supported\n"
         "a.xml:2:28: the attribute 'wings' of <geom> is not supported (and 1 more)\n"
-        "a.xml:3:13: the element <tendon> is not supported\n");
+        "a.xml:3:13: the element <extension> is not supported\n");
 }
 
 TEST_CASE("errors have the position, what was expected, and what was found") {
@@ -104,6 +104,15 @@ TEST_CASE("errors have the position, what was expected, and what was found") {
       {"<mujoco><worldbody><geom class='x'/></worldbody></mujoco>", "a.xml:1:20: there is no default class 'x'"},
       {"<mujoco><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>", "a.xml:1:20: there is no <mesh> 'm'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
+      {"<mujoco><equality><joint/></equality></mujoco>", "a.xml:1:19: expected an attribute 'joint1'"},
+      {"<mujoco><equality><connect body1='a'/></equality></mujoco>", "a.xml:1:19: expected an attribute 'anchor'"},
+      {"<mujoco><equality><weld body1='a' relpose='1 2'/></equality></mujoco>",
+       "a.xml:1:19: expected 7 numbers for 'relpose' of <weld>, found '1 2'"},
+      {"<mujoco><tendon><fixed/></tendon></mujoco>", "a.xml:1:17: expected at least one joint in a tendon"},
+      {"<mujoco><tendon><spatial><site site='a'/></spatial></tendon></mujoco>",
+       "a.xml:1:17: expected at least two sites in a tendon"},
+      {"<mujoco><tendon><fixed damping='-1'/></tendon></mujoco>",
+       "a.xml:1:17: expected 'damping' of 0 or more, found -1"},
       {"<mujoco><compiler eulerseq='xyw'/></mujoco>",
        "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xyw'"},
   };

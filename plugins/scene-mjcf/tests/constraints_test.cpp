@@ -1,0 +1,109 @@
+// Equalities and tendons in the tree. That they move as in MuJoCo is tested in tests/models.
+
+#include "mjcf_host.h"
+
+namespace spark::test {
+namespace {
+
+const char* const kBodies = R"(<mujoco model='m'><worldbody>
+  <body name='a' pos='0 0 1'><joint name='ja' axis='0 1 0'/><geom size='.1' mass='1'/><site name='sa' pos='.1 0 0'/></body>
+  <body name='b' pos='1 0 1'><joint name='jb' axis='0 1 0'/><geom size='.1' mass='1'/>
+    <body name='c' pos='.2 0 0'><geom size='.1' mass='1'/><site name='sc' pos='0 .1 0'/></body></body>
+  <body name='f' pos='2 0 1'><freejoint name='free'/><geom size='.1' mass='1'/></body>
+  <body name='ball' pos='3 0 1'><joint name='round' type='ball'/><geom size='.1' mass='1'/></body>
+  <site name='sw' pos='0 0 2'/></worldbody>
+)";
+std::string with(const std::string& section) { return kBodies + section + "</mujoco>"; }
+
+/// A scene that MuJoCo steps.
+struct MujocoHost : MjcfHost {
+  MujocoHost() {
+    kernel.plugins().use("physics-mujoco");
+    Node& server = kernel.root().require<Node>("/sys/server/physics");
+    server.remove(*server.child("engine"));
+    server.create("MujocoEngine", "engine");
+  }
+};
+
+const char* const kAll = R"(<equality>
+  <connect name='pin' body1='a' body2='f' anchor='0 0 .3'/><weld body1='c' body2='world'/>
+  <joint name='gear' joint1='ja' joint2='jb'/></equality>
+  <tendon><fixed name='sum'><joint joint='ja' coef='2'/></fixed>
+  <spatial name='rope' stiffness='3'><site site='sw'/><site site='sa'/><site site='sc'/></spatial></tendon>)";
+
+}  // namespace
+
+TEST_CASE("equalities and tendons are nodes of the model, in the frames of links") {
+  MujocoHost h;
+  h.import(with(kAll), {"r-"});
+  Leaf& pin = h.at<Leaf>("r-m/r-pin");
+  CHECK(getProperty(pin, "first").plain() == "../r-a/body");
+  CHECK(getProperty(pin, "anchor1").toList()[2].toNumber() == Approx(.3));
+  CHECK(getProperty(pin, "anchor2").toList()[0].toNumber() == Approx(-2));
+  CHECK(getProperty(h.at<Leaf>("r-m/r-gear"), "second").plain() == "../r-b/r-jb");
+  // Without a length of its own, the spring rests where the file has the bodies.
+  CHECK(getProperty(h.at<Leaf>("r-m/r-rope"), "springLength").toNumber() ==
+        Approx(std::hypot(.1, 1) + Vec3(1.1, .1, 0).norm()));
+  h.step(5);
+  CHECK_THAT(h.text, !Catch::Contains("no effect"));
+  CHECK_THAT(h.text, !Catch::Contains("MuJoCo does not take"));
+}
+
+TEST_CASE("a model with equalities and tendons may be there twice, and be removed") {
+  MujocoHost h;
+  Node& first = h.transform(h.scene, "first", {0, 0, 0});
+  h.folder.write("m.xml", with(kAll));
+  h.call(first, "importScene", {"m.xml", "r-"});
+  Node& second = h.transform(h.scene, "second", {0, 5, 0});
+  h.call(second, "importScene", {"m.xml", "s-"});
+  h.step(5);
+  first.remove(*first.child("r-m"));
+  h.step(5);
+  // A body that a constraint names goes alone.
+  Node& model = *second.child("s-m")->asNode();
+  model.remove(*model.child("s-f"));
+  h.step(5);
+  CHECK_THAT(h.text, Catch::Contains("1 equality or tendon of the world name bodies or joints that are not there"));
+  CHECK_THAT(h.text, !Catch::Contains("MuJoCo does not take"));
+  CHECK(h.at<IRigidBody>("second/s-m/s-a/body").state().position.allFinite());
+}
+
+TEST_CASE("other engines say that equalities and tendons have no effect") {
+  MjcfHost h;
+  h.import(with(kAll));
+  h.step();
+  CHECK_THAT(h.text, Catch::Contains("/usr/scene/m/pin: MujocoEquality has no effect with OdeEngine"));
+  CHECK_THAT(h.text, Catch::Contains("/usr/scene/m/sum: MujocoTendon has no effect with OdeEngine"));
+}
+
+TEST_CASE("equalities and tendons of what is not there are errors, and leave nothing behind") {
+  MujocoHost h;
+  const std::pair<const char*, const char*> cases[] = {
+      {"<equality><weld body1='a' body2='nobody'/></equality>", "m.xml:8:11: there is no body 'nobody'"},
+      {"<equality><joint joint1='free'/></equality>", "m.xml:8:11: there is no joint 'free' with a coordinate"},
+      {"<equality><joint joint1='round'/></equality>",
+       "m.xml:8:11: expected a joint with one coordinate, found the ball"},
+      {"<tendon><fixed><joint joint='none'/></fixed></tendon>", "m.xml:8:16: there is no joint 'none'"},
+      {"<tendon><spatial><site site='sa'/><site site='no'/></spatial></tendon>", "m.xml:8:35: there is no site 'no'"},
+  };
+  for (const auto& [section, message] : cases) {
+    CHECK_THAT(h.failure(with(section)), Catch::Contains(message));
+    CHECK_FALSE(h.kernel.root().find("/usr/scene/m"));
+  }
+  h.step();
+}
+
+TEST_CASE("a tendon takes joints or points, and only so many") {
+  MujocoHost h;
+  Leaf& tendon = h.scene.create("MujocoTendon", "t");
+  h.call(tendon, "addJoint", {"nowhere", 1.0});
+  CHECK_THROWS_WITH(h.call(tendon, "addPoint", {"", 0.0, 0.0, 0.0}), Catch::Contains("joints or points, not both"));
+  for (int i = 1; i < 32; ++i) h.call(tendon, "addJoint", {"nowhere", 1.0});
+  CHECK_THROWS_WITH(h.call(tendon, "addJoint", {"nowhere", 1.0}), Catch::Contains("at most 32"));
+  Leaf& equality = h.scene.create("MujocoEquality", "e");
+  CHECK_THROWS_WITH(setProperty(equality, "type", "glue"), Catch::Contains("expected connect or weld or joint"));
+  h.step(2);
+  CHECK_THAT(h.text, Catch::Contains("2 equalities or tendons of the world name"));
+}
+
+}  // namespace spark::test
