@@ -20,7 +20,7 @@ configure_package_config_file(cmake/SparkConfig.cmake.in ${CMAKE_BINARY_DIR}/Spa
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/Spark PATH_VARS SPARK_INSTALL_PLUGINS SPARK_INSTALL_SHARE)
 
 # Documentation, in the same folders as in the source tree, so that links between pages work.
-file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} *.md LICENSE docs/*.md docs/pictures/*.png docs/pictures/*.svg lua/*.md scenes/*.md plugins/README.md plugins/*/README.md tools/*/README.md tools/agents/*/README.md tests/*/README.md
+file(GLOB pages CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR} *.md LICENSE docs/*.md docs/pictures/*.png docs/pictures/*.svg lua/*.md scenes/*.md plugins/README.md plugins/*/README.md plugins/*-team/*/README.md tools/*/README.md tests/*/README.md
   plugins/sensors/gyro_rate_perceptor.h)
 foreach(page ${pages})
   get_filename_component(folder ${page} DIRECTORY)

@@ -105,6 +105,20 @@ class LintWords(unittest.TestCase):
         self.assertIn("none.h is no file of this tree", result.stderr)
         self.assertEqual(self.run_script(Path(__file__)).returncode, 2)
 
+    def test_plugins_use_neither_files_nor_libraries_of_tools(self):
+        self.write("tools/agents/CMakeLists.txt", "add_library(brain STATIC a.cpp)\n")
+        self.write("plugins/camera/CMakeLists.txt",
+                   "# tools/agents links it\nspark_plugin(camera LIBRARIES brain-camera)\n")
+        self.write("plugins/camera/a.cpp", 'const char* text = "start tools/play";  // tools/agents\n')
+        self.assertEqual((self.run_script().returncode, self.run_script().stdout), (0, ""))
+        self.write("plugins/camera/CMakeLists.txt", "x(${CMAKE_SOURCE_DIR}/tools/agents)\nx(camera LIBRARIES brain)\n")
+        self.write("plugins/camera/a.cpp", '#include "tools/agents/a.h"\n')
+        result = self.run_script()
+        self.assertEqual((result.returncode, [line.split(": ")[0] for line in result.stdout.splitlines()
+                                              if "uses nothing of tools/" in line]),
+                         (1, ["plugins/camera/CMakeLists.txt:1", "plugins/camera/CMakeLists.txt:2",
+                              "plugins/camera/a.cpp:1"]))
+
     def test_this_tree_passes(self):
         result = subprocess.run([ROOT / "tools/lint-words"], text=True, capture_output=True)
         self.assertEqual((result.returncode, result.stdout), (0, ""))
