@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// A bounding volume hierarchy: a binary tree of axis-aligned boxes, for rays that meet few of many boxes.
+/// A bounding volume hierarchy: a binary tree of axis-aligned boxes, for queries that meet few of many boxes.
 
 #include <array>
 #include <cmath>
@@ -33,8 +33,13 @@ class BoxTree {
   template <class Visit>
   void meet(const Vec3& from, const Vec3& direction, double nearest, Visit&& visit) const;
 
+  /// Calls `visit(index)` for the boxes at most `radius` [m] from `center`, in no order that matters.
+  template <class Visit>
+  void near(const Vec3& center, double radius, Visit&& visit) const;
+
  private:
   static constexpr std::uint32_t kLeaf = 4;  ///< most items of a leaf
+  static constexpr std::size_t kDepth = 64;  ///< more than any: the tree is balanced, and has 2^32 items at most
   struct Node {
     Box box;
     std::uint32_t second = 0;  ///< index of the second child; of a leaf: of its first item
@@ -65,8 +70,7 @@ void BoxTree::meet(const Vec3& from, const Vec3& direction, double nearest, Visi
   if (nodes_.empty()) return;
   const Vec3 inverse = direction.cwiseInverse();
   if (entry(nodes_[0].box, from, inverse, nearest) == kMissed) return;
-  // The tree is balanced: its depth is that of 2^32 items at most.
-  std::array<std::pair<std::uint32_t, double>, 64> waiting;
+  std::array<std::pair<std::uint32_t, double>, kDepth> waiting;
   std::size_t count = 0;
   waiting[count++] = {0, 0.0};
   while (count > 0) {
@@ -86,6 +90,27 @@ void BoxTree::meet(const Vec3& from, const Vec3& direction, double nearest, Visi
     if (a.second < b.second) std::swap(a, b);
     for (const auto& child : {a, b})
       if (child.second != kMissed) waiting[count++] = child;
+  }
+}
+
+template <class Visit>
+void BoxTree::near(const Vec3& center, double radius, Visit&& visit) const {
+  if (nodes_.empty()) return;
+  const auto isNear = [&](std::uint32_t index) {
+    const Box& box = nodes_[index].box;
+    return (center - center.cwiseMax(box.low).cwiseMin(box.high)).norm() <= radius;
+  };
+  std::array<std::uint32_t, kDepth> waiting;
+  std::size_t count = 0;
+  waiting[count++] = 0;
+  while (count > 0) {
+    const std::uint32_t index = waiting[--count];
+    if (!isNear(index)) continue;
+    const Node& node = nodes_[index];
+    for (std::uint32_t i = 0; i < node.items; ++i) visit(items_[node.second + i]);
+    if (node.items > 0) continue;
+    waiting[count++] = node.second;
+    waiting[count++] = index + 1;
   }
 }
 

@@ -240,6 +240,24 @@ std::span<const engine::Contact> PhysicsServer::contacts() const {
   return contacts_;
 }
 
+namespace {
+// An update of the RayScene costs as much as 4 to 11 queries save, measured with 50 to 2000 geoms.
+constexpr int kScans = 8;
+}  // namespace
+
+/// True if `rays_` can answer a query. The first queries at new poses test every geom; then `rays_` is updated. While
+/// one thread updates it, others go on testing every geom: the answers are the same.
+bool PhysicsServer::useRayScene(const physics::WorldModel& world) {
+  if (rays_.isCurrent(world.model(), world.poses())) return true;
+  if (scannedAt_.exchange(world.poses(), std::memory_order_relaxed) != world.poses())
+    scans_.store(0, std::memory_order_relaxed);
+  if (scans_.fetch_add(1, std::memory_order_relaxed) < kScans) return false;
+  const std::unique_lock lock(raysUpdate_, std::try_to_lock);
+  if (!lock) return false;
+  rays_.update(world.model(), world.state(), world.poses());
+  return true;
+}
+
 std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direction, double length,
                                              const Node* except) {
   const physics::WorldModel& world = expectWorld();
@@ -251,9 +269,8 @@ std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direc
   const physics::Accepts accepts = [&](const engine::Geom& g) {
     return !except || !isBelow(colliderOf(g.owner).leaf(), *except);
   };
-  const auto hit = rays_.isCurrent(world.model(), world.poses())
-                       ? rays_.castRay(from, unit, length, accepts)
-                       : physics::castRay(world.model(), world.state(), from, unit, length, accepts);
+  const auto hit = useRayScene(world) ? rays_.castRay(from, unit, length, accepts)
+                                      : physics::castRay(world.model(), world.state(), from, unit, length, accepts);
   if (!hit) return std::nullopt;
   return RayHit{&colliderOf(world.model().geoms[hit->geom].owner), hit->distance, from + hit->distance * unit,
                 hit->normal};
@@ -274,7 +291,7 @@ bool PhysicsServer::isHidden(const Vec3& from, const Vec3& to, const IRigidBody*
     return physics::distanceTo(g.shape, pose.rotation.transpose() * (to - pose.position)) > kAtSurface;
   };
   const physics::Accepts accepts = std::cref(hides);  // a copy would allocate
-  if (rays_.isCurrent(world.model(), world.poses())) return rays_.meets(from, unit, length, accepts);
+  if (useRayScene(world)) return rays_.meets(from, unit, length, accepts);
   return physics::castRay(world.model(), world.state(), from, unit, length, accepts).has_value();
 }
 
@@ -287,7 +304,10 @@ void PhysicsServer::prepareRays() {
 void PhysicsServer::overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) {
   const physics::WorldModel& world = expectWorld();
   std::vector<engine::Index> geoms;
-  physics::findOverlaps(world.model(), world.state(), center, radius, geoms);
+  if (useRayScene(world))
+    rays_.findOverlaps(center, radius, geoms);
+  else
+    physics::findOverlaps(world.model(), world.state(), center, radius, geoms);
   for (const engine::Index i : geoms) out.push_back(&colliderOf(world.model().geoms[i].owner));
 }
 

@@ -6,6 +6,9 @@
 ///              -> detect contacts -> handlers -> step -> feedback -> faults -> script handlers
 ///     place    poses of awake bodies -> transforms, outer ones first -> world matrices
 
+#include <atomic>
+#include <mutex>
+
 #include "collider.h"
 #include "effects.h"
 #include "handlers.h"
@@ -53,6 +56,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   World* currentWorld() { return world_ && !tree_.isStale(*this) ? world_ : findWorld(); }
   /// The same; throws Error when there is none.
   physics::WorldModel& expectWorld();
+  bool useRayScene(const physics::WorldModel& world);
   /// Collects bodies, colliders and handlers again when the shape of the scene changed. False when there is no world.
   bool refresh();
   void collect(const Node& scene);
@@ -90,6 +94,9 @@ class PhysicsServer : public Node, public IPhysicsServer {
   std::uint64_t structure_ = 0;  ///< Model::structure for which their indices are
   std::vector<Ref<ScriptHandler>> scripts_;
   physics::RayScene rays_;
+  std::mutex raysUpdate_;
+  std::atomic<std::uint64_t> scannedAt_ = 0;  ///< WorldModel::poses() of the last query that tested every geom
+  std::atomic<int> scans_ = 0;                ///< such queries at those poses
   physics::Effects effects_;
   engine::Contacts contacts_;
   std::vector<std::size_t> order_;  ///< of solveLate(), with sorted_

@@ -13,15 +13,18 @@ using engine::ShapeDescription;
 
 namespace {
 
-/// Distance from a point to a triangle: to its plane where the point is above it, else to the nearest edge.
+/// Distance from a point to a triangle: to its plane where the point is above it, else to the nearest edge. One without
+/// area has edges only.
 double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a).normalized();
   const auto toEdge = [&](const Vec3& from, const Vec3& to) {
     const Vec3 edge = to - from;
-    return (p - from - std::clamp(edge.dot(p - from) / edge.squaredNorm(), 0.0, 1.0) * edge).norm();
+    const double square = edge.squaredNorm();
+    const double along = square > 0 ? std::clamp(edge.dot(p - from) / square, 0.0, 1.0) : 0;
+    return (p - from - along * edge).norm();
   };
   const auto inside = [&](const Vec3& from, const Vec3& to) { return normal.dot((to - from).cross(p - from)) >= 0; };
-  if (inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(normal.dot(p - a));
+  if (!normal.isZero(0) && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(normal.dot(p - a));
   return std::min({toEdge(a, b), toEdge(b, c), toEdge(c, a)});
 }
 
@@ -44,15 +47,16 @@ std::optional<GeomHit> castRay(const engine::Model& model, const engine::State& 
     const engine::Geom& g = model.geoms[i];
     if (!isQueried(g)) continue;
     const Pose pose = poseOf(model, state, i);
-    // The sphere around the shape must come near enough to the ray.
+    // The sphere around the shape must come near enough to the ray, with room for rounding: a ray that only touches the
+    // shape is not rejected.
     const Vec3 to = pose.position - from;
     const double r = reach(g.shape), along = std::clamp(to.dot(direction), 0.0, nearest.distance);
-    if ((to - along * direction).squaredNorm() > r * r) continue;
+    if ((to - along * direction).squaredNorm() > r * r + 1e-12 * (r * r + to.squaredNorm())) continue;
     if (accepts && !accepts(g)) continue;
     const Mat3 toShape = pose.rotation.transpose();
     ShapeRay ray{toShape * -to, toShape * direction, nearest.distance};
     castShape(ray, g.shape);
-    if (ray.hit) nearest = {i, ray.nearest, pose.rotation * ray.normal};
+    if (ray.hit) nearest = {i, ray.nearest, toShape.transpose() * ray.normal};
   }
   if (nearest.geom == engine::kNone) return std::nullopt;
   return nearest;
@@ -90,15 +94,19 @@ double distanceTo(const ShapeDescription& s, const Vec3& p) {
   return HUGE_VAL;
 }
 
+bool touches(const ShapeDescription& shape, const Vec3& position, const Mat3& toShape, const Vec3& center,
+             double radius) {
+  const Vec3 to = center - position;
+  return to.norm() <= reach(shape) + radius && distanceTo(shape, toShape * to) <= radius;
+}
+
 void findOverlaps(const engine::Model& model, const engine::State& state, const Vec3& center, double radius,
                   std::vector<Index>& out) {
   for (Index i = 0; i < model.geoms.size(); ++i) {
     const engine::Geom& g = model.geoms[i];
     if (!isQueried(g)) continue;
     const Pose pose = poseOf(model, state, i);
-    const Vec3 to = center - pose.position;
-    if (to.norm() > reach(g.shape) + radius) continue;
-    if (distanceTo(g.shape, pose.rotation.transpose() * to) <= radius) out.push_back(i);
+    if (touches(g.shape, pose.position, pose.rotation.transpose(), center, radius)) out.push_back(i);
   }
 }
 

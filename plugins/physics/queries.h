@@ -1,7 +1,8 @@
 #pragma once
 /// \file
 /// Rays and overlaps, answered from the arrays of the model and the state. Const: several threads may ask at once,
-/// between two steps. Time grows with the number of geoms; most are rejected by a sphere around them.
+/// between two steps. Time grows with the number of geoms; most are rejected by a sphere around them. RayScene answers
+/// the same, to the last bit, from a tree.
 
 #include <functional>
 #include <optional>
@@ -27,6 +28,10 @@ std::optional<GeomHit> castRay(const engine::Model& model, const engine::State& 
 /// Appends the geoms that a sphere touches, in the order of the model.
 void findOverlaps(const engine::Model& model, const engine::State& state, const Vec3& center, double radius,
                   std::vector<engine::Index>& out);
+
+/// True if a sphere touches a shape at `position`, whose frame `toShape` rotates to from the world frame.
+bool touches(const engine::ShapeDescription& shape, const Vec3& position, const Mat3& toShape, const Vec3& center,
+             double radius);
 
 /// Distance from a point to a shape, both in the shape's frame [m]; 0 or less inside. Of a mesh: to its surface.
 double distanceTo(const engine::ShapeDescription& shape, const Vec3& point);

@@ -70,17 +70,21 @@ void buildMesh(BoxTree& tree, const ShapeDescription& s) {
 }  // namespace
 
 void RayScene::clear() {
-  at_ = {};
+  at_ = nullptr;
   placed_.clear();
   meshes_.clear();
 }
 
 void RayScene::update(const engine::Model& model, const engine::State& state, std::uint64_t poses) {
+  if (isCurrent(model, poses)) return;
   const Stamp now = stamp(model, poses);
-  if (at_ == now) return;
-  if (at_.model != now.model || at_.structure != now.structure || at_.collision != now.collision) collect(model);
+  const Stamp* last = at_.load(std::memory_order_relaxed);
+  if (!last || last->model != now.model || last->structure != now.structure || last->collision != now.collision)
+    collect(model);
   place(model, state);
-  at_ = now;
+  Stamp& next = stamps_[last == stamps_.data() ? 1 : 0];
+  next = now;
+  at_.store(&next, std::memory_order_release);
 }
 
 /// Lists the geoms, and builds the trees of new meshes.
@@ -126,13 +130,18 @@ void RayScene::place(const engine::Model& model, const engine::State& state) {
 /// Sets `hit` if the ray meets the geom within `length`.
 bool RayScene::cast(const Placed& p, const Vec3& from, const Vec3& direction, double length, GeomHit& hit) const {
   ShapeRay ray{p.toShape * (from - p.position), p.toShape * direction, length};
-  if (p.mesh < 0)
+  if (p.mesh < 0) {
     castShape(ray, p.geom->shape);
-  else
+  } else {
+    std::uint32_t met = 0;
     meshes_[static_cast<std::size_t>(p.mesh)].triangles.meet(ray.from, ray.direction, length, [&](std::uint32_t i) {
-      castTriangle(ray, p.geom->shape, i);
+      ShapeRay one{ray.from, ray.direction, ray.nearest};
+      castTriangle(one, p.geom->shape, i);
+      // At an edge of two triangles the last in their order counts.
+      if (one.hit && (!ray.hit || one.nearest < ray.nearest || i > met)) ray = one, met = i;
       return ray.nearest;
     });
+  }
   if (ray.hit) hit = {p.index, ray.nearest, p.toShape.transpose() * ray.normal};
   return ray.hit;
 }
@@ -156,6 +165,16 @@ std::optional<GeomHit> RayScene::castRay(const Vec3& from, const Vec3& direction
   });
   if (nearest.geom == engine::kNone) return std::nullopt;
   return nearest;
+}
+
+void RayScene::findOverlaps(const Vec3& center, double radius, std::vector<Index>& out) const {
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
+  const auto visit = [&](const Placed& p) {
+    if (touches(p.geom->shape, p.position, p.toShape, center, radius)) out.push_back(p.index);
+  };
+  for (std::size_t i = bounded_; i < placed_.size(); ++i) visit(placed_[i]);
+  tree_.near(center, std::max(radius, 0.0), [&](std::uint32_t i) { visit(placed_[i]); });
+  std::sort(out.begin() + first, out.end());
 }
 
 bool RayScene::meets(const Vec3& from, const Vec3& direction, double length, const Accepts& accepts) const {

@@ -1,7 +1,9 @@
 #pragma once
 /// \file
-/// The geoms of a world at one moment, prepared for many rays: sensors cast thousands in a cycle.
+/// The geoms of a world at one moment, prepared for many rays and overlaps: sensors cast thousands of rays in a cycle.
 
+#include <array>
+#include <atomic>
 #include <optional>
 #include <vector>
 
@@ -10,15 +12,20 @@
 
 namespace spark::physics {
 
-/// Answers the same as castRay() of queries.h, faster for many rays. update() runs in one thread; after it several
-/// threads may cast rays, until the model or the state changes. Nothing is allocated while the number of geoms stays.
+/// Answers the same as castRay() and findOverlaps() of queries.h, to the last bit, faster where there are many geoms
+/// and queries. update() runs in one thread at a time, while others may call isCurrent(); where that is true, several
+/// threads may make queries, until the model or the state changes. Nothing is allocated while the number of geoms
+/// stays.
 class RayScene {
  public:
   /// Takes the geoms of `model` at their places in `state`. Both must outlive the queries. `poses`: a number that is
   /// another one whenever a body was moved. Returns at once if nothing has changed.
   void update(const engine::Model& model, const engine::State& state, std::uint64_t poses);
   /// True if nothing has changed since update().
-  bool isCurrent(const engine::Model& model, std::uint64_t poses) const { return at_ == stamp(model, poses); }
+  bool isCurrent(const engine::Model& model, std::uint64_t poses) const {
+    const Stamp* at = at_.load(std::memory_order_acquire);
+    return at && *at == stamp(model, poses);
+  }
   /// Forgets everything, as before the first update().
   void clear();
 
@@ -26,6 +33,9 @@ class RayScene {
   std::optional<GeomHit> castRay(const Vec3& from, const Vec3& direction, double length, const Accepts& accepts) const;
   /// True if the ray meets a geom that `accepts` takes.
   bool meets(const Vec3& from, const Vec3& direction, double length, const Accepts& accepts) const;
+
+  /// As physics::findOverlaps().
+  void findOverlaps(const Vec3& center, double radius, std::vector<engine::Index>& out) const;
 
  private:
   struct Stamp {
@@ -56,10 +66,12 @@ class RayScene {
   template <class Visit>
   void visitAlong(const Vec3& from, const Vec3& direction, double length, Visit&& visit) const;
 
-  Stamp at_;
-  std::vector<Placed> placed_;  ///< those with bounds, then planes
-  std::size_t bounded_ = 0;     ///< number of those with bounds
-  std::vector<Box> boxes_;      ///< of those
+  /// The last update and the one before: while one thread updates, others may still compare with the older one.
+  std::array<Stamp, 2> stamps_;
+  std::atomic<const Stamp*> at_ = nullptr;  ///< of stamps_
+  std::vector<Placed> placed_;              ///< those with bounds, then planes
+  std::size_t bounded_ = 0;                 ///< number of those with bounds
+  std::vector<Box> boxes_;                  ///< of those
   BoxTree tree_;
   std::vector<Mesh> meshes_;
 };

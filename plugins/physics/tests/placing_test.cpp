@@ -1,3 +1,6 @@
+#include <atomic>
+#include <thread>
+
 #include "physics_house.h"
 
 using namespace spark;
@@ -119,4 +122,32 @@ TEST_CASE("rays and overlaps find colliders, and a ray ignores those below a giv
   found.clear();
   server.overlaps({3.5, 0, 1}, 0.9, found);
   CHECK(found.empty());
+}
+
+TEST_CASE("rays and overlaps are the same for the first query at some poses and for many, in several threads") {
+  PhysicsHost host;
+  std::vector<Node*> boxes;
+  for (int i = 0; i < 30; ++i) boxes.push_back(&host.box("box" + std::to_string(i), {2.0 + i, 0, 1}, {1, 1, 1}));
+  auto& server = host.kernel.root().require<IPhysicsServer>(IPhysicsServer::kPath);
+  std::vector<IRigidBody*> bodies;
+  server.bodies(*boxes.front(), bodies);
+  REQUIRE(bodies.size() == 1);
+  std::atomic<int> wrong = 0;
+  for (int move = 0; move < 20; ++move) {
+    bodies[0]->setPosition({2, move % 2 == 0 ? 0.0 : 5.0, 1});
+    const double expected = move % 2 == 0 ? 1.5 : 2.5;
+    const std::size_t touched = move % 2 == 0 ? 2 : 1;
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i)
+      threads.emplace_back([&] {
+        for (int query = 0; query < 50; ++query) {
+          const auto hit = server.castRay({0, 0, 1}, {1, 0, 0}, 10);
+          std::vector<ICollider*> found;
+          server.overlaps({2.5, 0, 1}, 0.1, found);
+          wrong += !hit || hit->distance != expected || found.size() != touched;
+          wrong += !server.isHidden({0, 0, 1}, {9.25, 0, 1}, nullptr, nullptr);
+        }
+      });
+  }
+  CHECK(wrong == 0);
 }

@@ -108,12 +108,55 @@ TEST_CASE("RayScene finds the geom, the distance and the normal that a test of e
         if (!every) continue;
         ++hits;
         CHECK(found->geom == every->geom);
-        CHECK(found->distance == Approx(every->distance).margin(1e-12));
-        CHECK((found->normal - every->normal).norm() < 1e-9);
+        CHECK(found->distance == every->distance);
+        CHECK(found->normal == every->normal);
       }
     }
   }
   CHECK(hits > 1000);
+}
+
+TEST_CASE("RayScene meets the edge of two triangles as a test of every triangle does", "[senses]") {
+  RandomScene s(1, 0);
+  // A square fan around the origin of slanted triangles, with all of its edges along the axes.
+  engine::ShapeDescription fan{.shape = Shape::mesh, .vertices = {0, 0, 1}};
+  for (int i = 0; i < 16; ++i)
+    for (const double v : {std::cos(kPi * i / 8), std::sin(kPi * i / 8), i % 2 == 0 ? 0.0 : 0.5})
+      fan.vertices.push_back(v);
+  for (std::uint32_t i = 0; i < 16; ++i)
+    fan.triangles.insert(fan.triangles.end(), {0, 1 + (i * 5) % 16, 1 + (i * 5 + 1) % 16});
+  s.add(fan);
+  s.model.geoms[0].offset = {Vec3::Zero(), Mat3::Identity()};
+  RayScene rays;
+  rays.update(s.model, s.state, 1);
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 to(i % 2 == 0 ? 0 : s.number(-1, 1), i % 3 == 0 ? 0 : s.number(-1, 1), 3);
+    const auto every = castRay(s.model, s.state, to, -Vec3::UnitZ(), 10, {});
+    const auto found = rays.castRay(to, -Vec3::UnitZ(), 10, {});
+    REQUIRE(found.has_value() == every.has_value());
+    if (every) CHECK((found->distance == every->distance && found->normal == every->normal));
+  }
+}
+
+TEST_CASE("RayScene finds the overlaps that a test of every geom finds, in the same order", "[senses]") {
+  RayScene rays;
+  std::size_t touched = 0;
+  for (unsigned seed = 0; seed < 300; ++seed) {
+    RandomScene s(seed, static_cast<int>(seed % 60));
+    rays.clear();
+    rays.update(s.model, s.state, seed);
+    for (int i = 0; i < 20; ++i) {
+      const Vec3 center = s.vector(5);
+      const double radius = i == 0 ? 0 : i == 1 ? -0.1 : i == 2 ? HUGE_VAL : s.number(0, 2);
+      std::vector<engine::Index> every{7}, found{7};  // both append
+      findOverlaps(s.model, s.state, center, radius, every);
+      rays.findOverlaps(center, radius, found);
+      CAPTURE(seed, i);
+      CHECK(found == every);
+      touched += found.size() - 1;
+    }
+  }
+  CHECK(touched > 10000);
 }
 
 TEST_CASE("what rays call hidden in 10,000 random scenes is what a search without rays calls hidden", "[senses]") {
