@@ -138,6 +138,14 @@ TEST_CASE("RayScene meets the edge of two triangles as a test of every triangle 
   }
 }
 
+TEST_CASE("a triangle without area is as far as its edges", "[senses]") {
+  engine::ShapeDescription mesh{.shape = Shape::mesh, .vertices = {0, 0, 0, 1, 0, 0, 2, 0, 0}, .triangles = {0, 1, 2}};
+  CHECK(distanceTo(mesh, {0.5, 3, 0}) == Approx(3));
+  CHECK(distanceTo(mesh, {3, 0, 0}) == Approx(1));
+  mesh.triangles = {1, 1, 1};
+  CHECK(distanceTo(mesh, {1, 0, 2}) == Approx(2));
+}
+
 TEST_CASE("RayScene finds the overlaps that a test of every geom finds, in the same order", "[senses]") {
   RayScene rays;
   std::size_t touched = 0;
