@@ -60,7 +60,7 @@ void Constraints::add(int number, const EqualityNumbers& n) {
   const std::string first = nameOf(n.first, n.part1, 1), second = nameOf(n.second, n.part2, 2);
   const bool alone = joints && (n.named & 2) == 0;
   if (first.empty() || (second.empty() && !alone) || first == second) {
-    ++skipped_;
+    skipped_.push_back(number);
     return;
   }
   const char* const type = EqualityNumbers::kTypes[static_cast<std::size_t>(n.type)];
@@ -93,7 +93,7 @@ void Constraints::add(int number, const TendonNumbers& n) {
     }
   }
   if (!whole) {
-    ++skipped_;
+    skipped_.push_back(number);
     return;
   }
   sites_.insert(sites_.end(), sites.begin(), sites.end());

@@ -17,8 +17,8 @@ class Constraints {
   std::string sites(Index body) const;
   /// The sections `equality` and `tendon`.
   std::string text() const;
-  /// Number of those that name what is not there, and are left out.
-  int skipped() const { return skipped_; }
+  /// The numbers of those that are left out: what they name is not there, is there twice, or has not one coordinate.
+  const std::vector<int>& skipped() const { return skipped_; }
 
  private:
   /// A body of MuJoCo, which may be a part of one of the model's; "" if there is none. 0: the world.
@@ -32,7 +32,7 @@ class Constraints {
   std::vector<std::uint8_t> hasBody_, hasJoint_;  ///< by body and joint of the model: MuJoCo has it
   std::string equalities_, tendons_;
   std::vector<std::pair<Index, std::string>> sites_;
-  int skipped_ = 0;
+  std::vector<int> skipped_;
 };
 
 /// Writes points and rotations of equalities, and lengths of springs, to a compiled model: MuJoCo's compiler finds some

@@ -138,8 +138,7 @@ void MujocoTendon::add(bool spatial, const std::string& path, const std::array<d
     throw Error(fmt::format("{}: a tendon has joints or points, not both", this->path()));
   if (paths_.size() == N::kMaxElements)
     throw Error(fmt::format("{}: expected at most {} joints or points of a tendon", this->path(), N::kMaxElements));
-  if (!std::all_of(point.begin(), point.end(), [](double v) { return std::isfinite(v); }))
-    throw Error(fmt::format("{}: expected finite numbers", this->path()));
+  mujoco::requireFinite(*this, point);
   auto elements = numbers().elements;
   elements[paths_.size()].point = point;
   paths_.push_back(path);

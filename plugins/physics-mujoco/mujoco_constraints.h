@@ -4,6 +4,7 @@
 /// anywhere in a scene; what they hold is of its world.
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 #include "api/extension.h"
@@ -55,6 +56,17 @@ struct TendonNumbers {
 
 /// Numbers of blocks: ids of nodes.
 inline constexpr int kConstraintNumbers = std::numeric_limits<int>::max();
+inline int constraintNumber(const Leaf& node) { return static_cast<int>(node.id() % kConstraintNumbers); }
+
+inline void requireFinite(const Leaf& node, double v) {
+  if (!std::isfinite(v)) throw Error(fmt::format("{}: expected finite numbers, found {}", node.path(), v));
+}
+template <std::size_t N>
+void requireFinite(const Leaf& node, const std::array<double, N>& numbers) {
+  for (const double v : numbers) requireFinite(node, v);
+}
+template <class Other>
+void requireFinite(const Leaf&, const Other&) {}
 
 }  // namespace mujoco
 
@@ -62,8 +74,14 @@ inline constexpr int kConstraintNumbers = std::numeric_limits<int>::max();
 template <class T>
 class MujocoConstraint : public engine::Extension<T> {
  protected:
-  int number() const override { return static_cast<int>(this->id() % mujoco::kConstraintNumbers); }
+  int number() const override { return mujoco::constraintNumber(*this); }
   engine::IExtended* element() override { return engine::worldAround(*this); }
+  /// As the base does. Throws Error for numbers that are not finite.
+  template <auto Member>
+  void set(std::decay_t<decltype(std::declval<T>().*Member)> v) {
+    mujoco::requireFinite(*this, v);
+    engine::Extension<T>::template set<Member>(v);
+  }
 };
 
 /// Bodies that are held together, or joints whose coordinates depend on each other.

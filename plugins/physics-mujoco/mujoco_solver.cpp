@@ -38,6 +38,16 @@ Sizes sizesFor(const engine::Model& model) {
   return {50 + 12 * single + jointed, 200 + 50 * single + 5 * jointed};
 }
 
+/// The path of the node below `node` whose block has that number.
+std::string pathOfConstraint(const Node& node, int number) {
+  for (const auto& child : node.children()) {
+    if (constraintNumber(*child) == number) return child->path();
+    if (const Node* const inner = child->asNode())
+      if (std::string found = pathOfConstraint(*inner, number); !found.empty()) return found;
+  }
+  return "";
+}
+
 }  // namespace
 
 void MujocoSolver::compile(const engine::Model& model, const engine::State& state) {
@@ -63,12 +73,13 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
 
 std::string MujocoSolver::textOf(const engine::Model& model, const Trees& trees) {
   const Constraints constraints(model, trees);
-  if (const int n = constraints.skipped(); n > std::exchange(skipped_, n))
-    engine_.kernel().log().warning(
-        "{}: {} of the world name bodies or joints that are not there, or that MuJoCo has not as one coordinate; they "
-        "have "
-        "no effect",
-        engine_.path(), n == 1 ? "1 equality or tendon" : fmt::format("{} equalities or tendons", n));
+  const std::vector<int> before = std::exchange(skipped_, constraints.skipped());
+  for (const int number : skipped_)
+    if (std::find(before.begin(), before.end(), number) == before.end())
+      engine_.kernel().log().warning(
+          "{}: no effect in MuJoCo: expected bodies that are there, or joints with one coordinate, and no element "
+          "twice",
+          pathOfConstraint(engine_.kernel().root(), number));
   return toMjcf(model, trees, step_, sizes_, constraints);
 }
 

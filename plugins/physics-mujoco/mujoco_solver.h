@@ -48,10 +48,10 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   Sizes sizes_;
-  double step_ = 0.005;  ///< s
-  int skipped_ = 0;      ///< constraints that the last text leaves out
-  bool full_ = false;    ///< no more room can be had
-  std::string refused_;  ///< why the last model that was refused was
+  double step_ = 0.005;       ///< s
+  std::vector<int> skipped_;  ///< constraints that the last text leaves out
+  bool full_ = false;         ///< no more room can be had
+  std::string refused_;       ///< why the last model that was refused was
   Pending pending_;
   std::future<void> ending_;                      ///< the world before
   std::vector<std::future<Compiled>> abandoned_;  ///< still compiling, not wanted any more

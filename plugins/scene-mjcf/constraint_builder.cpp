@@ -117,8 +117,7 @@ void ConstraintBuilder::tendon(const Tendon& t) {
   double offset = 0;  // of lengths that are sums of coordinates
   if (!t.spatial)
     for (const TendonPart& part : t.parts) offset += part.coefficient * jointOf(part.name, part.from).joint->reference;
-  const auto shifted = [](const auto& joint) { return joint.second.joint->springPosition != 0; };
-  if (t.spatial && t.springLength < 0 && t.stiffness > 0 && std::any_of(c_.joints.begin(), c_.joints.end(), shifted))
+  if (t.spatial && t.springLength < 0 && t.stiffness > 0 && hasShiftedJoint(t))
     c_.unsupported.add(t.from,
                        fmt::format("the spring of {} rests where the file has the bodies; 'springref' and 'ref' "
                                    "of joints do not count",
@@ -141,6 +140,20 @@ void ConstraintBuilder::tendon(const Tendon& t) {
   setProperty(*node, "limitSolimp", toList(t.limitSolimp));
   setProperty(*node, "frictionSolref", toList(t.frictionSolref));
   setProperty(*node, "frictionSolimp", toList(t.frictionSolimp));
+}
+
+bool ConstraintBuilder::hasShiftedJoint(const Tendon& t) {
+  const auto isAt = [&](const PlacedBody& joined, const TendonPart& part) {
+    int up = static_cast<int>(siteOf(part).body->body - c_.model.bodies.data());
+    while (up > 0 && &c_.bodies[up] != &joined) up = c_.model.bodies[static_cast<std::size_t>(up)].parent;
+    return up > 0;
+  };
+  return std::any_of(c_.bodies.begin(), c_.bodies.end(), [&](const PlacedBody& b) {
+    const auto& joints = b.body->joints;
+    if (std::none_of(joints.begin(), joints.end(), [](const Joint& j) { return j.springPosition != 0; })) return false;
+    const auto moved = std::count_if(t.parts.begin(), t.parts.end(), [&](const auto& part) { return isAt(b, part); });
+    return moved > 0 && moved < std::ssize(t.parts);
+  });
 }
 
 ConstraintBuilder::Place ConstraintBuilder::siteOf(const TendonPart& part) {

@@ -27,6 +27,8 @@ class ConstraintBuilder {
   void place(const Equality& x, Leaf& node);
   void tendon(const Tendon& t);
   double springLength(const Tendon& t);
+  /// True if a joint whose reference or spring is not where the file has the bodies moves its sites in each other.
+  bool hasShiftedJoint(const Tendon& t);
   /// A site and its body.
   struct Place {
     PlacedBody* body;

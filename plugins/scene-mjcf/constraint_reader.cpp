@@ -28,6 +28,7 @@ void ConstraintReader::equality(const Element& e, Model& model) {
     throw e.error(fmt::format("expected an attribute '{}'", joints ? "joint1" : "body1"));
   }
   if (!joints && x.second.empty()) x.second = "world";
+  if (x.first == x.second) throw e.error(fmt::format("expected two different elements, found '{}' twice", x.first));
   if (x.type == "connect" && !a.take("anchor", x.anchor)) throw e.error("expected an attribute 'anchor'");
   if (x.type == "weld") {
     a.take("anchor", x.anchor);
@@ -70,8 +71,11 @@ void ConstraintReader::tendon(const Element& e, const std::vector<Element>& part
       return;
     }
     Attributes own(part, unsupported_);
+    if (!t.spatial && !own.has("coef")) throw part.error("expected an attribute 'coef'");
     t.parts.push_back({part, own.text(t.spatial ? "site" : "joint"), t.spatial ? 0 : own.number("coef", 1)});
     own.finish();
+    if (t.spatial && t.parts.size() > 1 && t.parts.back().name == t.parts[t.parts.size() - 2].name)
+      throw part.error(fmt::format("expected another site than the one before, found '{}' again", t.parts.back().name));
   }
   if (t.parts.size() < (t.spatial ? 2u : 1u))
     throw e.error(t.spatial ? "expected at least two sites in a tendon" : "expected at least one joint in a tendon");

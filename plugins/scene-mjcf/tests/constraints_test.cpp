@@ -63,17 +63,26 @@ TEST_CASE("a model with equalities and tendons may be there twice, and be remove
   Node& model = *second.child("s-m")->asNode();
   model.remove(*model.child("s-f"));
   h.step(5);
-  CHECK_THAT(h.text, Catch::Contains("1 equality or tendon of the world name bodies or joints that are not there"));
+  CHECK_THAT(h.text, Catch::Contains("/usr/scene/second/s-m/s-pin: no effect in MuJoCo"));
+  CHECK(std::string(h.text).find("no effect", h.text.find("no effect") + 1) == std::string::npos);
   CHECK_THAT(h.text, !Catch::Contains("MuJoCo does not take"));
   CHECK(h.at<IRigidBody>("second/s-m/s-a/body").state().position.allFinite());
 }
 
 TEST_CASE("other engines say that equalities and tendons have no effect") {
-  MjcfHost h;
-  h.import(with(kAll));
-  h.step();
-  CHECK_THAT(h.text, Catch::Contains("/usr/scene/m/pin: MujocoEquality has no effect with OdeEngine"));
-  CHECK_THAT(h.text, Catch::Contains("/usr/scene/m/sum: MujocoTendon has no effect with OdeEngine"));
+  for (const auto& [plugin, engine] : {std::pair{"physics-ode", "OdeEngine"},
+                                       {"physics-articulated", "ArticulatedEngine"},
+                                       {"physics-bullet", "BulletEngine"}}) {
+    MjcfHost h;
+    h.kernel.plugins().use(plugin);
+    Node& server = h.kernel.root().require<Node>("/sys/server/physics");
+    server.remove(*server.child("engine"));
+    server.create(engine, "engine");
+    h.import(with(kAll));
+    h.step();
+    CHECK_THAT(h.text, Catch::Contains(fmt::format("/usr/scene/m/pin: MujocoEquality has no effect with {}", engine)));
+    CHECK_THAT(h.text, Catch::Contains(fmt::format("/usr/scene/m/sum: MujocoTendon has no effect with {}", engine)));
+  }
 }
 
 TEST_CASE("equalities and tendons of what is not there are errors, and leave nothing behind") {
@@ -83,7 +92,12 @@ TEST_CASE("equalities and tendons of what is not there are errors, and leave not
       {"<equality><joint joint1='free'/></equality>", "m.xml:8:11: there is no joint 'free' with a coordinate"},
       {"<equality><joint joint1='round'/></equality>",
        "m.xml:8:11: expected a joint with one coordinate, found the ball"},
-      {"<tendon><fixed><joint joint='none'/></fixed></tendon>", "m.xml:8:16: there is no joint 'none'"},
+      {"<tendon><fixed><joint joint='none' coef='1'/></fixed></tendon>", "m.xml:8:16: there is no joint 'none'"},
+      {"<equality><weld body1='a' body2='a'/></equality>", "m.xml:8:11: expected two different elements"},
+      {"<equality><joint joint1='ja' joint2='ja'/></equality>", "m.xml:8:11: expected two different elements"},
+      {"<tendon><fixed><joint joint='ja'/></fixed></tendon>", "m.xml:8:16: expected an attribute 'coef'"},
+      {"<tendon><spatial><site site='sa'/><site site='sa'/></spatial></tendon>",
+       "m.xml:8:35: expected another site than the one before"},
       {"<tendon><spatial><site site='sa'/><site site='no'/></spatial></tendon>", "m.xml:8:35: there is no site 'no'"},
   };
   for (const auto& [section, message] : cases) {
@@ -91,6 +105,39 @@ TEST_CASE("equalities and tendons of what is not there are errors, and leave not
     CHECK_FALSE(h.kernel.root().find("/usr/scene/m"));
   }
   h.step();
+}
+
+TEST_CASE("numbers of equalities and tendons are finite") {
+  MujocoHost h;
+  Leaf& tendon = h.scene.create("MujocoTendon", "t");
+  Leaf& equality = h.scene.create("MujocoEquality", "e");
+  const double nan = std::nan("");
+  CHECK_THROWS_WITH(h.call(tendon, "addJoint", {"nowhere", nan}), Catch::Contains("finite"));
+  CHECK_THROWS_WITH(setProperty(tendon, "range", List{0.0, nan}), Catch::Contains("finite"));
+  for (const char* name : {"anchor1", "anchor2"})
+    CHECK_THROWS_WITH(setProperty(equality, name, List{0.0, nan, 0.0}), Catch::Contains("finite"));
+  CHECK_THROWS_WITH(setProperty(equality, "torqueScale", nan), Catch::Contains("finite"));
+}
+
+TEST_CASE("the spring of a spatial tendon is judged by the joints that move it") {
+  const auto model = [](const char* tendon) {
+    return std::string(R"(<mujoco model='m'><worldbody>
+      <body name='a' pos='0 0 1'><joint name='ja' axis='0 1 0'/><geom size='.1' mass='1'/><site name='sa' pos='.1 0 0'/>
+        <site name='sa2'/></body>
+      <body name='b' pos='1 0 1'><joint name='jb' axis='0 1 0' springref='10'/><geom size='.1' mass='1'/>
+        <site name='sb'/><site name='sb2' pos='0 .1 0'/></body><site name='sw' pos='0 0 2'/></worldbody>
+      <tendon><spatial name='rope' stiffness='3'>)") +
+           tendon + "</spatial></tendon></mujoco>";
+  };
+  const auto warns = [&](const char* tendon) {
+    MujocoHost h;
+    h.import(model(tendon));
+    return h.text.find("rests where the file has the bodies") != std::string::npos;
+  };
+  CHECK(warns("<site site='sw'/><site site='sb'/>"));
+  CHECK(warns("<site site='sa'/><site site='sb'/>"));
+  CHECK_FALSE(warns("<site site='sw'/><site site='sa'/>"));
+  CHECK_FALSE(warns("<site site='sb'/><site site='sb2'/>"));
 }
 
 TEST_CASE("a tendon takes joints or points, and only so many") {
@@ -103,7 +150,8 @@ TEST_CASE("a tendon takes joints or points, and only so many") {
   Leaf& equality = h.scene.create("MujocoEquality", "e");
   CHECK_THROWS_WITH(setProperty(equality, "type", "glue"), Catch::Contains("expected connect or weld or joint"));
   h.step(2);
-  CHECK_THAT(h.text, Catch::Contains("2 equalities or tendons of the world name"));
+  CHECK_THAT(h.text, Catch::Contains("/usr/scene/t: no effect in MuJoCo"));
+  CHECK_THAT(h.text, Catch::Contains("/usr/scene/e: no effect in MuJoCo"));
 }
 
 }  // namespace spark::test
