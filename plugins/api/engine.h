@@ -24,6 +24,7 @@
 #include "spark/abi/api/engine.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
+#include "spark/state.h"
 
 namespace spark::engine {
 
@@ -62,6 +63,8 @@ class Attached {
   Attached& operator=(const Attached&) = delete;
   /// True when the next of() starts another part.
   bool startsAnew(Maker& maker) const { return leaf_.get() != &maker.leaf(); }
+  /// The part that was made last; nullptr: there is none, or it has ended.
+  Part* present() const { return leaf_ ? part_ : nullptr; }
   /// The part that `maker` has made for the model, always the same model. That of another node ends.
   Part& of(Maker& maker, const Model& model) {
     if (!startsAnew(maker)) return *part_;
@@ -94,6 +97,11 @@ class IDetector {
   /// geoms, the first geom as comesFirst() has it. Skips pairs of geoms of one body, pairs whose bodies a joint
   /// connects and pairs that the filter rejects. Reads the new poses of the bodies in `state.moved`.
   virtual void detect(const Model& model, const State& state, PairFilter filter, int perPair, Contacts& out) = 0;
+  /// Writes what decides the next detection and is neither in the model nor in the poses. Called between two steps.
+  virtual void save(const State&, StateWriter&) const {}
+  /// Reads it again. Called after compile(), before a detection that has all bodies in `state.moved`. Throws Error
+  /// where it does not fit.
+  virtual void load(const Model&, StateReader&) {}
 };
 
 /// Makes the detectors of worlds.
@@ -143,6 +151,10 @@ class ISolver {
   /// What finds the contacts, of an engine with Capabilities::detects; otherwise nullptr. Before detect() the solver is
   /// compiled where it has to be, also when Model::collision changed, and then the detector with the edited geoms.
   virtual IDetector* detector() { return nullptr; }
+  /// Writes what decides the next step and is neither in the model nor in the state.
+  virtual void save(StateWriter&) const {}
+  /// Reads it again. Called after compile(), before a step. Throws Error where it does not fit.
+  virtual void load(const Model&, StateReader&) {}
 };
 
 /// What an engine can do. `tests/engines` tests each of them and writes them to docs/engines.md; a world with something

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "spark/error.h"
+#include "spark/kernel.h"
 
 namespace spark::files {
 
@@ -70,7 +71,10 @@ std::string FileServer::read(std::string_view resource) {
     }
     return content.has_value();
   });
-  if (content) return *std::move(content);
+  if (content) {
+    kernel().sources().add("file", name, *content);
+    return *std::move(content);
+  }
   if (failure) throw *failure;
   notFound(name);
 }

@@ -8,6 +8,7 @@ void ScriptBehavior::describe(Description<ScriptBehavior>& d) {
   d.doc("A behaviour written in Lua: handles start and think, sets actions to S-expressions.");
   d.link(&ScriptBehavior::simulation_, At<ISimulation>()).doc("The clock of its events.");
   d.property("actions", &ScriptBehavior::actions_)
+      .state()
       .doc("The agent's next actions: S-expressions, set by the script's handlers.");
   d.method("script", &ScriptBehavior::script)
       .parameters({"file", "arguments"})

@@ -3,6 +3,7 @@
 #include "api/agents.h"
 #include "humanoid/player.h"
 #include "spark/plugin.h"
+#include "spark/state_fields.h"
 
 namespace spark {
 
@@ -21,13 +22,23 @@ class HumanoidBehavior : public Behavior {
         .range(-1, 4)
         .doc("Type of its robot; -1: the one that the demo team has for this number; all five types play.");
   }
-  void start(Predicates& actions) override {
-    player_.emplace(team_, unum_, type_ >= 0 ? type_ : humanoid::robotType(unum_));
-    player_->start(actions);
-  }
+  void start(Predicates& actions) override { makePlayer().start(actions); }
   void think(const Predicates& percepts, Predicates& actions) override { player_->think(percepts, actions); }
 
+ protected:
+  void saveState(StateWriter& out) const override {
+    out.write(player_.has_value());
+    if (player_) saveFields(out, *player_);
+  }
+  void loadState(StateReader& in) override {
+    player_.reset();
+    if (in.readBool()) loadFields(in, makePlayer());
+  }
+
  private:
+  humanoid::HumanoidPlayer& makePlayer() {
+    return player_.emplace(team_, unum_, type_ >= 0 ? type_ : humanoid::robotType(unum_));
+  }
   std::string team_ = "Spark";
   int unum_ = 1, type_ = -1;
   std::optional<humanoid::HumanoidPlayer> player_;

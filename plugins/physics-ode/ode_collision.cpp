@@ -301,6 +301,83 @@ void OdeDetector::compile(const Model& model, const State& state, std::span<cons
   node_.messages_.report(node_);
 }
 
+// ---- exact replay ----
+
+// In a space of ODE what moved last comes first: the order of its geoms depends on all that moved before, and the order
+// of contacts on it. So it is state.
+
+void OdeDetector::save(const State& state, StateWriter& out) const {
+  const CollisionWorld& w = world_;
+  if (!w.exactReplay) return;
+  for (const auto& s : w.spaces) {
+    const int count = dSpaceGetNumGeoms(s->space);
+    out.write(count);
+    for (int i = 0; i < count; ++i) {
+      const dGeomID g = dSpaceGetGeom(s->space, i);
+      if (!dGeomIsSpace(g)) {
+        out.write(static_cast<std::int64_t>(static_cast<const GeomData*>(dGeomGetData(g))->index));
+        continue;
+      }
+      const auto inner = std::find_if(w.spaces.begin(), w.spaces.end(),
+                                      [&](const auto& other) { return other.get() == dGeomGetData(g); });
+      out.write(-1 - (inner - w.spaces.begin()));  // below 0: a space
+    }
+  }
+  out.write(static_cast<std::int64_t>(state.moved.size()));
+  for (const Index i : state.moved) out.write(static_cast<std::int64_t>(i));
+}
+
+void OdeDetector::load(const Model& model, StateReader& in) {
+  CollisionWorld& w = world_;
+  if (!w.exactReplay) return;
+  const auto expect = [](bool good) {
+    if (!good) throw Error("the saved order of contacts is that of another world");
+  };
+  CollisionWorld::Order order;
+  for (const auto& s : w.spaces) {
+    std::vector<dGeomID>& geoms = order.spaces.emplace_back(in.readCount());
+    expect(static_cast<int>(geoms.size()) == dSpaceGetNumGeoms(s->space));
+    for (dGeomID& g : geoms) {
+      const std::int64_t i = in.readInteger(), space = -1 - i;
+      expect(i < std::ssize(w.geoms) && space < std::ssize(w.spaces));
+      g = i < 0 ? reinterpret_cast<dGeomID>(w.spaces[static_cast<std::size_t>(space)]->space)
+                : w.geoms[static_cast<std::size_t>(i)]->geom;
+      expect(dSpaceQuery(s->space, g) != 0);
+    }
+  }
+  order.moved.resize(in.readCount());
+  for (Index& i : order.moved) {
+    i = static_cast<Index>(in.readInteger());
+    expect(i < model.bodies.size());
+  }
+  w.loaded = std::move(order);
+}
+
+namespace {
+/// Brings all geoms into the order that was loaded, as ODE would have it now.
+void restoreOrder(CollisionWorld& w, const State& state) {
+  const CollisionWorld::Order order = *std::exchange(w.loaded, std::nullopt);
+  if (order.spaces.size() != w.spaces.size()) return;  // the world was changed since
+  const auto clean = [&w] {
+    for (const auto& s : w.spaces) dSpaceClean(s->space);
+  };
+  clean();
+  // Inner spaces first: a change of one may move it in the space around it. One geom at a time, so that ODE never has
+  // one that is not clean behind one that is.
+  for (std::size_t s = w.spaces.size(); s-- > 0;) {
+    const dSpaceID space = w.spaces[s]->space;
+    for (auto g = order.spaces[s].rbegin(); g != order.spaces[s].rend(); ++g) {
+      dSpaceRemove(space, *g);
+      dSpaceAdd(space, *g);
+      clean();
+    }
+  }
+  // What is clean comes to the front when it moves.
+  for (const Index i : order.moved)
+    for (Index g = w.firstGeom[i]; g < w.firstGeom[i + 1]; ++g) place(*w.geoms[w.geomsOf[g]], state);
+}
+}  // namespace
+
 // ---- detection ----
 
 namespace {
@@ -360,6 +437,7 @@ void OdeDetector::detect(const Model&, const State& state, engine::PairFilter fi
   CollisionWorld& w = world_;
   const MessageCapture capture(node_.messages_.last);
   followBodies(w, state);
+  if (w.loaded) restoreOrder(w, state);
 
   // Broad phase: the close pairs, in ODE's order (exact replay) or sorted by age.
   ++w.detections;

@@ -12,6 +12,7 @@
 ///     moved bodies -> poses of geoms -> sweep and prune -> close pairs -> filters -> sort -> narrow phase -> contacts
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "api/engine.h"
@@ -77,6 +78,12 @@ struct CollisionWorld {
   // likewise, in rising order.
   std::vector<engine::Index> firstGeom, geomsOf, firstJoined, joinedTo;
   std::vector<Pair> pairs;  ///< close pairs of the current detect()
+  /// Exact replay, of a state that was loaded: the orders of ODE's spaces, and the bodies that moved since, in order.
+  struct Order {
+    std::vector<std::vector<dGeomID>> spaces;
+    std::vector<engine::Index> moved;
+  };
+  std::optional<Order> loaded;
   explicit CollisionWorld(bool exactReplay);
   ~CollisionWorld();
   CollisionWorld(const CollisionWorld&) = delete;
@@ -92,6 +99,8 @@ class OdeDetector : public engine::IDetector {
   void compile(const engine::Model& model, const engine::State& state, std::span<const engine::Index> edited) override;
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
               engine::Contacts& out) override;
+  void save(const engine::State& state, StateWriter& out) const override;
+  void load(const engine::Model& model, StateReader& in) override;
   /// ODE's spaces and geoms, for measurements.
   const CollisionWorld& world() const { return world_; }
 

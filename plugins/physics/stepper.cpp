@@ -8,6 +8,17 @@ using engine::DynamicState;
 using engine::Index;
 using engine::kNone;
 
+namespace {
+/// Passes what was loaded on, once.
+template <class F>
+void takeState(std::string& loaded, F&& load) {
+  if (loaded.empty()) return;
+  const std::string bytes = std::exchange(loaded, {});
+  StateReader in(bytes);
+  load(in);
+}
+}  // namespace
+
 Stepper::Stepper(WorldModel& world) : world_(world), data_(world.data()), added_(data_, world.kinematics()) {}
 
 template <class Maker>
@@ -38,6 +49,28 @@ void Stepper::bringOwn(engine::IDetector& detector) {
     detector.compile(data_.model, data_.state, world_.edited());
 }
 
+void Stepper::save(StateWriter& out) const {
+  const auto write = [&](const std::string& loaded, auto&& save) {
+    StateWriter own(true);
+    if (loaded.empty()) save(own);
+    out.write(loaded.empty() ? own.bytes() : loaded);
+  };
+  engine::ISolver* const solver = engine_.attached.present();
+  engine::IDetector* const own = solver ? solver->detector() : nullptr;
+  engine::IDetector* const detector = own ? own : collision_.attached.present();
+  write(detectorState_, [&](StateWriter& to) {
+    if (detector) detector->save(data_.state, to);
+  });
+  write(solverState_, [&](StateWriter& to) {
+    if (solver) solver->save(to);
+  });
+}
+
+void Stepper::load(StateReader& in) {
+  detectorState_ = in.readString();
+  solverState_ = in.readString();
+}
+
 void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
                      engine::Contacts& out) {
   world_.compact();
@@ -47,6 +80,7 @@ void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, eng
     engine::IDetector& detector =
         own ? *own : collision_.bring(*collision, data_.model, data_.model.collision, compile);
     if (own) bringOwn(*own);
+    takeState(detectorState_, [&](StateReader& in) { detector.load(data_.model, in); });
     detector.detect(data_.model, data_.state, filter, perPair, out);
   }
   world_.clearEdited();
@@ -76,6 +110,7 @@ void Stepper::repeatForces() {
 void Stepper::step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink) {
   world_.compact();
   engine::ISolver& solver = Stepper::solver(engine);
+  takeState(solverState_, [&](StateReader& in) { solver.load(data_.model, in); });
   const engine::Capabilities can = engine.capabilities();
   engine::State& state = data_.state;
   const bool first = !std::exchange(again_, false);

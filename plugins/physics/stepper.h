@@ -27,6 +27,10 @@ class Stepper {
   void keepForces(bool on);
   /// Adds the kept ones again, before a further step of the engine.
   void repeatForces();
+  /// Writes what engines keep from step to step beside the state.
+  void save(StateWriter& out) const;
+  /// Reads it again; engines get it before their next detection or step. They throw Error then where it does not fit.
+  void load(StateReader& in);
   /// The bodies that were put back after the last step. Valid until the next step of the simulation.
   std::span<const BodyHandle> repaired() const { return repaired_; }
 
@@ -55,7 +59,8 @@ class Stepper {
     Vec3 force, torque;
   };
   std::vector<KeptForce> kept_;
-  bool again_ = false;  ///< the next step is a further one
+  bool again_ = false;                       ///< the next step is a further one
+  std::string detectorState_, solverState_;  ///< loaded, and not taken yet
   std::vector<engine::Index> wrong_;
   std::vector<BodyHandle> repaired_;
 };

@@ -88,6 +88,14 @@ void World::onLink() {
   model_->setBlocks(blocks_);
 }
 
+void World::saveState(StateWriter& out) const {
+  if (stepper_) stepper_->save(out);
+}
+
+void World::loadState(StateReader& in) {
+  if (stepper_) stepper_->load(in);
+}
+
 const std::shared_ptr<physics::SharedSpace>& World::space() {
   if (parent())
     if (auto* first = parent()->childOf<Space>(); first && first->shared()) return first->shared();

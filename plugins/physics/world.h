@@ -48,6 +48,8 @@ class World : public PhysicsObject, public engine::IExtended, public engine::IEx
 
  protected:
   void onLink() override;
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
 
  private:
   Vec3 gravity() const { return parameters_.gravity; }

@@ -18,6 +18,7 @@ void SceneServer::describe(Description<SceneServer>& d) {
           "After an import, removes imported transforms that are empty or contain only transforms; their children move "
           "up.");
   d.property("modifiedCount", &SceneServer::modifiedCount)
+      .ofProcess()
       .doc("Number of changes of the scene's nodes and materials so far.");
   d.method("createScene", &SceneServer::createScene)
       .parameters({"path"})

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "spark/state.h"
-
 namespace spark {
 
 namespace {
@@ -22,23 +20,6 @@ void StatusVariables::report(std::vector<StatusEntry>& out) const {
     if (const auto found = all().find(word); found != all().end()) out.push_back({found->first, found->second, {}});
   for (const auto& [name, value] : all())
     if (std::find(std::begin(kWords), std::end(kWords), name) == std::end(kWords)) out.push_back({name, value, {}});
-}
-
-void StatusVariables::saveState(StateWriter& out) const {
-  out.write(static_cast<std::int64_t>(all().size()));
-  for (const auto& [name, value] : all()) {
-    out.write(std::string_view(name));
-    out.write(value);
-  }
-}
-
-void StatusVariables::loadState(StateReader& in) {
-  Map variables;
-  for (std::int64_t n = in.readInteger(); n > 0; --n) {
-    std::string name = in.readString();
-    variables.insert_or_assign(std::move(name), in.readValue());
-  }
-  replaceAll(std::move(variables));
 }
 
 }  // namespace spark

@@ -6,17 +6,13 @@
 namespace spark {
 
 /// A group whose variables are the status of a game (IStatus): a game in Lua reports its score by
-/// `Status.score = {2, 1}`. The variables are part of the saved state.
+/// `Status.score = {2, 1}`.
 class StatusVariables : public Variables, public IStatus {
   SPARK_CLASS(StatusVariables, Variables)
  public:
   static void describe(Description<StatusVariables>& d);
   /// Reports the names that IStatus knows first, then all other variables, sorted by name.
   void report(std::vector<StatusEntry>& out) const override;
-
- protected:
-  void saveState(StateWriter& out) const override;
-  void loadState(StateReader& in) override;
 };
 
 }  // namespace spark

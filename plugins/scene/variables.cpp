@@ -1,5 +1,7 @@
 #include "variables.h"
 
+#include "spark/state_fields.h"
+
 namespace spark {
 
 void Variables::describe(Description<Variables>& d) {
@@ -9,6 +11,7 @@ void Variables::describe(Description<Variables>& d) {
   d.method("get", &Variables::get).parameters({"name"}).doc("The variable's value, nil when there is none.");
   d.property("names", &Variables::names).doc("Names of all variables, sorted.");
   d.property("value", &Variables::value_)
+      .state()
       .doc("Value of the group itself, without a member: a list, indexed from 0, or a table of names.");
 }
 
@@ -32,5 +35,8 @@ std::vector<std::string> Variables::names() const {
   for (const auto& [name, value] : variables_) out.push_back(name);
   return out;
 }
+
+void Variables::saveState(StateWriter& out) const { saveFields(out, variables_); }
+void Variables::loadState(StateReader& in) { loadFields(in, variables_); }
 
 }  // namespace spark

@@ -9,7 +9,7 @@
 namespace spark {
 
 /// A group of variables, a child of /sys/variables. Its name is that of the group: scene files read `Robot.Mass` from
-/// the group `Robot`. Without a member, as in `NaoType[0]['UseToe']`, they read the group's own `value`.
+/// the group `Robot`. Without a member, as in `NaoType[0]['UseToe']`, they read the group's own `value`. All are state.
 class Variables : public Leaf, public IVariables {
   SPARK_CLASS(Variables, Leaf)
  public:
@@ -18,10 +18,11 @@ class Variables : public Leaf, public IVariables {
   Value variable(std::string_view name) const override;
 
  protected:
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
   using Map = std::map<std::string, Value, std::less<>>;
   /// All variables, sorted by name.
   const Map& all() const { return variables_; }
-  void replaceAll(Map variables) { variables_ = std::move(variables); }
 
  private:
   void set(std::string name, Value value);

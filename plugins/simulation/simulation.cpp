@@ -59,26 +59,30 @@ void Simulation::describe(Description<Simulation>& d) {
   d.property("cycle", &Simulation::cycle).doc("Number of the current cycle, from 1; 0 before the first.");
   d.property("time", &Simulation::time).unit("s").doc("Simulated time since the start.");
   d.property("phaseMicros", &Simulation::phaseMicros)
+      .ofProcess()
       .doc("Mean wall time per cycle of each phase since resetTimers() [microseconds].");
   d.property("cycleTimes", &Simulation::cycleTimes)
+      .ofProcess()
       .doc(
           "Three lists {name, cycles, p50, p90, p99, p99.9, longest} of wall time since resetTimers() [microseconds]: "
           "late, from the time a cycle was due to its beginning; long, from its beginning to its end; done, from "
           "the time it was due to its end.");
   d.property("histogram", &Simulation::histogram)
+      .ofProcess()
       .doc(
           "The same as a histogram, a list {from, late, long, done} for each bucket that is not empty: its lower end "
           "[microseconds], and the numbers of cycles in it.");
   d.property("lostTime", &Simulation::lostTime_)
       .unit("s")
-      .readOnly()
+      .ofProcess()
       .doc(
           "Wall time by which cycles began too late in real time, because earlier ones took longer than a step. It is "
           "not made up for.");
   d.property("lateCycles", &Simulation::lateCycles_)
-      .readOnly()
+      .ofProcess()
       .doc("Number of cycles that began too late in real time.");
   d.property("faults", &Simulation::faults)
+      .ofProcess()
       .doc(
           "Number of faults of plugins and scripts that were caught while the simulation ran; the log has the first of "
           "each place.");

@@ -1,5 +1,7 @@
 #include "soccer_settings.h"
 
+#include "spark/state_fields.h"
+
 namespace spark {
 
 void SoccerSettings::describe(Description<SoccerSettings>& d) {
@@ -313,5 +315,8 @@ Value SoccerSettings::variable(std::string_view name) const {
   const auto other = others_.find(name);
   return other == others_.end() ? Value() : other->second;
 }
+
+void SoccerSettings::saveState(StateWriter& out) const { saveFields(out, others_); }
+void SoccerSettings::loadState(StateReader& in) { loadFields(in, others_); }
 
 }  // namespace spark

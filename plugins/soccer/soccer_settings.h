@@ -76,6 +76,10 @@ class SoccerSettings : public Node, public IVariables {
   std::string leftGoalRecorder = "leftgoal/GoalBox/BoxCollider/recorder",
               rightGoalRecorder = "rightgoal/GoalBox/BoxCollider/recorder";
 
+ protected:
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
  private:
   std::map<std::string, Value, std::less<>> others_;  ///< of define()
   soccer::VisibleObjects visibleObjects_;

@@ -1,5 +1,6 @@
 #include "api/agents.h"
 #include "spark/plugin.h"
+#include "spark/state_fields.h"
 #include "sphere/player.h"
 
 namespace spark {
@@ -23,6 +24,10 @@ class SphereBehavior : public Behavior {
     player_.start(actions);
   }
   void think(const Predicates& percepts, Predicates& actions) override { player_.think(percepts, actions); }
+
+ protected:
+  void saveState(StateWriter& out) const override { saveFields(out, player_); }
+  void loadState(StateReader& in) override { loadFields(in, player_); }
 
  private:
   std::string team_ = "Spark", robot_ = "rsg/agent/sphere.rsg";

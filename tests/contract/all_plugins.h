@@ -2,6 +2,7 @@
 /// \file
 /// A kernel with every built plugin registered, and the order in which plugins need each other.
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <string>
 #include <vector>
@@ -31,6 +32,25 @@ struct AllPlugins : TestHost {
     return out;
   }
 };
+
+/// A different valid value of the property; nil if none is known.
+inline Value another(const Property& p, const Value& v) {
+  if (v.isBool()) return !v.toBool();
+  if (!p.choices.empty()) return p.choices.front() == v.plain() ? p.choices.back() : p.choices.front();
+  if (!v.isNumber()) return {};
+  double d = v.toNumber() + 1;
+  if (p.max && d > *p.max) d = *p.max;
+  if (p.min && d < *p.min) d = *p.min;
+  return v.isInteger() ? Value(static_cast<std::int64_t>(d)) : Value(d);
+}
+
+/// As another(), and for lists of numbers with another first one.
+inline Value anotherOrList(const Property& p, const Value& v) {
+  if (!v.isList() || v.toList().empty() || !v.toList()[0].isNumber()) return another(p, v);
+  List list = v.toList();
+  list[0] = another(p, list[0]);
+  return list;
+}
 
 /// True if a property of this type holds numbers that may have a unit.
 inline bool isNumeric(const std::string& type) {

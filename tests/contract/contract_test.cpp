@@ -9,6 +9,7 @@
 
 using namespace spark;
 using spark::test::AllPlugins;
+using spark::test::another;
 
 namespace {
 /// Calls `check` for every class of every plugin. Failures and exceptions are reported with plugin and class.
@@ -76,17 +77,6 @@ bool isClose(const Value& a, const Value& b) {
   for (std::size_t i = 0; i < a.toList().size(); ++i)
     if (!isClose(a.toList()[i], b.toList()[i])) return false;
   return true;
-}
-
-/// A different valid value of the property; nil if none is known.
-Value another(const Property& p, const Value& v) {
-  if (v.isBool()) return !v.toBool();
-  if (!p.choices.empty()) return p.choices.front() == v.plain() ? p.choices.back() : p.choices.front();
-  if (!v.isNumber()) return {};
-  double d = v.toNumber() + 1;
-  if (p.max && d > *p.max) d = *p.max;
-  if (p.min && d < *p.min) d = *p.min;
-  return v.isInteger() ? Value(static_cast<std::int64_t>(d)) : Value(d);
 }
 
 /// Sets a property and reads it back, on an object that is not linked: setters must not need the tree. Returns what is

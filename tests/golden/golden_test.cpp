@@ -73,11 +73,20 @@ struct Row {
 };
 
 std::vector<Row> measured() {
-  constexpr int kBoxes = 500, kSpheres = 3000;
+  constexpr int kBoxes = 500, kSpheres = 3000, kHumanoids = 400;
+  const auto humanoids = [](std::vector<std::pair<std::string, Value>> more) {
+    more.insert(
+        more.end(),
+        {{"team", "Red Blue"}, {"players", 2}, {"Soccer.AutomaticKickOff", true}, {"Soccer.WaitBeforeKickOff", 1}});
+    return worldHash("soccer.lua", more, kHumanoids);
+  };
   return {{"math", 0, mathHash()},
           {"boxes", kBoxes, worldHash("boxes.lua", {}, kBoxes)},
           {"soccer-sphere", kSpheres,
-           worldHash("soccer-sphere.lua", {{"team", "Red Blue"}, {"Soccer.RuleHalfTime", 20}}, kSpheres)}};
+           worldHash("soccer-sphere.lua", {{"team", "Red Blue"}, {"Soccer.RuleHalfTime", 20}}, kSpheres)},
+          {"soccer", kHumanoids, humanoids({})},
+          {"soccer-without-exact-replay", kHumanoids, humanoids({{"exactReplay", false}})},
+          {"soccer-articulated", kHumanoids, humanoids({{"solver", "articulated"}})}};
 }
 
 std::string lineOf(const Row& row) { return fmt::format("{} {} {:016x}", row.name, row.cycles, row.hash); }

@@ -1,12 +1,16 @@
 /// saveState and loadState of objects in running worlds. A world runs and is saved at regular intervals. Each time the
 /// state is loaded into a copy of the world in a second kernel. The copy is some cycles behind, so a field that is not
 /// restored keeps an old value. Every node must then save the same bytes, and both worlds must continue with equal
-/// hashes. The state of each class with saveState must differ from that of a new object at least once.
+/// hashes, and with equal values of all properties. The state of each class with saveState must differ from that of a
+/// new object at least once.
+#include <fmt/ranges.h>
+
 #include <catch2/catch.hpp>
 #include <map>
 #include <set>
 
 #include "../contract/all_plugins.h"
+#include "../readable.h"
 #include "spark/error.h"
 #include "worlds.h"
 
@@ -107,6 +111,8 @@ void play(const Scenario& scenario, Seen& seen) {
       INFO(scenario.name << ", cycle " << cycle);
       if (one.hash() != other.hash()) checkEqual(one, other);
       REQUIRE(one.hash() == other.hash());
+      if (const auto lines = readableDifferences(one.kernel, other.kernel); !lines.empty())
+        FAIL_CHECK(fmt::format("{}", fmt::join(lines, "\n")));
     }
     if (cycle % kBetween == kTogether) together = false;
     if (cycle % kBetween != 0) continue;

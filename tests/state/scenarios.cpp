@@ -138,6 +138,7 @@ void makeSpl(World& w) {
     soccerVariables{ AutomaticKickOff = true, WaitBeforeKickOff = 0.2 }
     for _, class in ipairs { "TeamlessAspect", "SPLState", "BallStateAspect", "SPLRule" } do new(class, "/sys/server/gamecontrol/" .. class) end
     new("TrainerCommandParser", "/sys/server/monitor/TrainerCommandParser")
+    get("/sys/variables/Soccer"):define("Extra", 3)
     get("/usr/scene"):importScene("rsg/soccer/field.rsg")
   )lua");
   w.join("A", 1, box(kStanding, 0));
@@ -205,6 +206,54 @@ void inputPieces(World& w, int cycle) {
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 
+// ---- exact replay: the order of contacts is state ----
+
+void makePiles(World& w) {
+  w.configureByText(R"lua(
+    include "house.lua"
+    include "materials.lua"
+    files() scene() materials() physics("OdeEngine", { exactReplay = true }) simulation()
+  )lua");
+  call(make(w, "PlaneCollider", "ground"), "setParams", {0.0, 0.0, 1.0, 0.0});
+  make(w, "ContactJointHandler", "ground/solid");
+  for (int i = 0; i < 24; ++i) makeBox(w, fmt::format("box{}", i), {0.1 * (i % 3), 0.07 * (i % 4), 0.3 + 0.15 * i});
+}
+
+void inputPiles(World& w, int cycle) {
+  if (cycle % 40 == 20) call(w.at("/usr/scene/box3/body"), "addForce", {cycle % 80 == 20 ? 200.0 : -200.0, 0.0, 300.0});
+}
+
+void makeFallers(World& w) {
+  w.configure("soccer.lua", {{"exactReplay", true}});
+  for (int n = 1; n <= 3; ++n) w.join("A", n, "rsg/agent/nao/nao.rsg");
+}
+
+void inputFallers(World& w, int cycle) {
+  if (cycle == 1)
+    w.trainer("(playMode PlayOn)" + put("Left", 1, -3, 0, 0.4) + put("Left", 2, -2.8, 0.1, 0.9) +
+              put("Left", 3, -2.9, 0, 1.4));
+  w.player(static_cast<std::size_t>(cycle % 3)).next = fmt::format("(lle3 {})(he1 1)", cycle % 30 < 15 ? 2 : -2);
+}
+
+// ---- players inside the host, and scripts ----
+
+void makeMatch(World& w) { w.configure("soccer.lua", {{"team", "Red Blue"}, {"players", 2}, {"exactReplay", false}}); }
+
+void makeSphereMatch(World& w) { w.configure("soccer-sphere.lua", {{"team", "Red Blue"}, {"players", 3}}); }
+
+void makeScripts(World& w) {
+  w.configureByText(R"lua(
+    include "house.lua"
+    files() scene() physics() simulation()
+    new("Variables", "/sys/variables/Count")
+    state.falls = 0
+    on("rule", function(self, event)
+      state.falls = state.falls + math.random(3)
+      Count.falls = state.falls
+    end)
+  )lua");
+}
+
 // ---- robots with imperfect sensors and effectors ----
 
 void makeImperfect(World& w) {
@@ -240,16 +289,24 @@ const std::string& log() {
 }
 
 void makeReplay(World& w) { w.configure("logplayer.lua", {{"file", log()}, {"wait", false}, {"speed", 0.7}}); }
-void inputReplay(World&, int) {}
+void inputReplay(World&, int) {}  // nothing comes from outside
 
 }  // namespace
 
 const std::vector<Scenario>& scenarios() {
   static const std::vector<Scenario> all{
-      {"fouls", makeFouls, inputFouls, 900},       {"robots", makeRobots, inputRobots, 150},
-      {"spheres", makeSpheres, inputSpheres, 200}, {"spl", makeSpl, inputSpl, 100},
-      {"pieces", makePieces, inputPieces, 150},    {"imperfect", makeImperfect, inputImperfect, 150},
+      {"fouls", makeFouls, inputFouls, 900},
+      {"robots", makeRobots, inputRobots, 150},
+      {"spheres", makeSpheres, inputSpheres, 200},
+      {"spl", makeSpl, inputSpl, 100},
+      {"pieces", makePieces, inputPieces, 150},
+      {"imperfect", makeImperfect, inputImperfect, 150},
       {"replay", makeReplay, inputReplay, 100},
+      {"piles", makePiles, inputPiles, 200},
+      {"fallers", makeFallers, inputFallers, 125},
+      {"match", makeMatch, inputReplay, 150},
+      {"sphere match", makeSphereMatch, inputReplay, 200},
+      {"scripts", makeScripts, inputReplay, 50},
   };
   return all;
 }

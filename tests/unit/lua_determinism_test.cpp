@@ -3,6 +3,7 @@
 
 #include "lua_fixture.h"
 #include "spark/script_server.h"
+#include "spark/state.h"
 
 using namespace spark;
 using namespace spark::test;
@@ -130,4 +131,115 @@ TEST_CASE("a script cannot modify the libraries that all scripts share") {
   scripts(h.kernel).attachText(h.thing("/usr/a"), "string.rep = nil pairs = nil math.floor = nil", "script", true);
   CHECK(h.run("return {('x'):rep(2), string.rep('y', 2), math.floor(1.5), type(pairs)}") ==
         Value(List{"xx", "yy", 1, "function"}));
+}
+
+// ---- state ----
+
+namespace {
+std::string savedScripts(LuaHost& h) {
+  StateWriter out(true);
+  saveTree(h.kernel.root(), out);
+  return out.bytes();
+}
+void loadScripts(LuaHost& h, const std::string& bytes) {
+  StateReader in(bytes);
+  loadTree(h.kernel.root(), in);
+  CHECK(in.atEnd());
+}
+/// A host with two scripts that count.
+struct Counters : LuaHost {
+  Counters() {
+    thing("/usr/a");
+    thing("/usr/b");
+    write("count.lua",
+          "state.seen = {}\nlocal seen = state.seen\nstate.n = 0\n"
+          "on('count', function(self) state.n = state.n + 1 seen[state.n] = math.random(1000) "
+          "self.anything = {state.n, seen[state.n], #seen} end)");
+    run("get('/usr/a'):attachScript('count.lua') get('/usr/b'):attachScript('count.lua')");
+  }
+  Value count() {
+    emit("count");
+    return run("return {get('/usr/a').anything, get('/usr/b').anything}");
+  }
+};
+}  // namespace
+
+TEST_CASE("A script's table `state` and its random numbers are state") {
+  Counters one, two;
+  CHECK(one.count() == two.count());
+  one.count();
+  CHECK(savedScripts(one) != savedScripts(two));
+  const std::string saved = savedScripts(one);
+  const Value next = one.count();
+  // Into another kernel, and back in the same one: tables that a script holds stay its tables.
+  for (Counters* c : {&two, &one}) {
+    loadScripts(*c, saved);
+    CHECK(savedScripts(*c) == saved);
+    CHECK(c->count() == next);
+  }
+}
+
+TEST_CASE("State of scripts: all kinds of keys and values come back") {
+  LuaHost one, two;
+  for (LuaHost* h : {&one, &two}) {
+    h->thing("/usr/a");
+    h->run("state = {}");
+  }
+  one.run(
+      "state = {1, 2.5, 'x', true, {deep = {er = false}}, [-3] = 'minus', [0.5] = 'half', [true] = 'yes', node = "
+      "get('/usr/a'), big = 2^53 | 1}");
+  loadScripts(two, savedScripts(one));
+  CHECK(savedScripts(two) == savedScripts(one));
+  CHECK(two.run("return {state[1], state[2], state[3], state[4], state[5].deep.er, state[-3], state[0.5], state[true], "
+                "state.node.label, math.type(state[1]), state.big}") ==
+        Value(List{1, 2.5, "x", true, false, "minus", "half", "yes", "none", "integer", 9007199254740993}));
+  // What was there and is not in the saved state goes.
+  two.run("state.more = 1");
+  loadScripts(two, savedScripts(one));
+  CHECK(two.run("return state.more == nil") == Value(true));
+}
+
+TEST_CASE("State of scripts that cannot be saved is named once, and is left out") {
+  LuaHost h;
+  h.run("state.list = {1, {f = function() end}}");
+  const std::string saved = savedScripts(h);
+  savedScripts(h);
+  CHECK_THAT(h.text, Contains("state.list.2.f is a function; expected a number, text, boolean, table or node"));
+  CHECK(h.text.find("cannot be saved") == h.text.rfind("cannot be saved"));
+  loadScripts(h, saved);
+  CHECK(h.run("return state.list[1]") == Value(1));
+  h.run("state.list = nil state.me = state");
+  savedScripts(h);
+  h.run("state = 7");
+  CHECK(savedScripts(h) != saved);
+}
+
+TEST_CASE("Saved state of other scripts is refused, hostile bytes too") {
+  Counters one;
+  LuaHost none;
+  none.thing("/usr/a"), none.thing("/usr/b");
+  none.run("return 1");
+  const std::string saved = savedScripts(one), other = savedScripts(none);
+  StateReader in(saved);
+  CHECK_THROWS_WITH(loadTree(none.kernel.root(), in), Contains("expected the state of"));
+  for (std::size_t i = 0; i < saved.size(); i += 8) {
+    std::string bad = saved;
+    bad[i] = static_cast<char>(bad[i] ^ 0x5a), bad[i + 7] = static_cast<char>(bad[i + 7] ^ 0x40);
+    Counters victim;
+    StateReader reader(bad);
+    try {
+      loadTree(victim.kernel.root(), reader);
+    } catch (const Error&) {
+    }
+    victim.count();
+  }
+}
+
+TEST_CASE("Scripts whose node is gone have no state") {
+  Counters h;
+  const auto size = savedScripts(h).size();
+  h.run("get('/usr/b'):attachScript('count.lua')");
+  CHECK(savedScripts(h).size() > size);
+  h.run("delete('/usr/b')");
+  CHECK(savedScripts(h).size() < size);
 }

@@ -34,9 +34,9 @@ TEST_CASE("an untrusted script has only pure functions and self") {
   LuaHost h;
   CHECK(sandbox(h, "local n = {} for k in pairs(_G) do n[#n + 1] = k end self.anything = n") == "");
   CHECK(h.kernel.root().find<Thing>("/usr/a")->anything ==
-        Value(List{"_G",    "assert", "error",    "ipairs",   "math",     "next",   "on",
-                   "pairs", "pcall",  "rawequal", "rawget",   "rawlen",   "rawset", "select",
-                   "self",  "string", "table",    "tonumber", "tostring", "type",   "utf8"}));
+        Value(List{"_G",     "assert",   "error",    "ipairs",   "math",   "next",   "on",   "pairs",
+                   "pcall",  "rawequal", "rawget",   "rawlen",   "rawset", "select", "self", "state",
+                   "string", "table",    "tonumber", "tostring", "type",   "utf8"}));
   CHECK(sandbox(h,
                 "local n = {} for k in pairs(string) do n[#n + 1] = k end self.anything = {n, ('').find, ('').gsub}") ==
         "");

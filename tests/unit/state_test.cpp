@@ -4,6 +4,7 @@
 
 #include "core_classes.h"
 #include "spark/error.h"
+#include "spark/state_fields.h"
 
 using namespace spark;
 using spark::test::Core;
@@ -218,4 +219,90 @@ TEST_CASE("A state reader returns the written values") {
   StateWriter plus(false);
   plus.write(0.0);
   CHECK(hashOnly.hash() != plus.hash());
+}
+
+namespace {
+struct Inner {
+  int a = 0;
+  std::string b;
+  template <class F>
+  void fields(F& f) {
+    f(a, b);
+  }
+  bool operator==(const Inner&) const = default;
+};
+enum class Colour { red, green };
+struct Outer {
+  double number = 0;
+  bool flag = false;
+  Colour colour = Colour::red;
+  Value value;
+  std::array<double, 3> array{};
+  std::vector<Inner> list;
+  std::map<std::string, Inner> map;
+  std::optional<Inner> some, none = Inner{7, "gone"};
+  template <class F>
+  void fields(F& f) {
+    f(number, flag, colour, value, array, list, map, some, none);
+  }
+  bool operator==(const Outer&) const = default;
+};
+}  // namespace
+
+TEST_CASE("Fields of all kinds are saved and loaded by one list") {
+  Outer from, to;
+  from = {-0.5,          true, Colour::green, List{1, "x"}, {1, 2, 3}, {{1, "a"}, {2, "b"}}, {{"k", {3, "c"}}},
+          Inner{4, "d"}, {}};
+  StateWriter out(true);
+  saveFields(out, from);
+  StateReader in(out.bytes());
+  loadFields(in, to);
+  CHECK(in.atEnd());
+  CHECK(to == from);
+  // A count that cannot be right is refused before anything is made.
+  StateWriter hostile(true);
+  hostile.write(std::uint64_t{1} << 50);
+  StateReader bad(hostile.bytes());
+  CHECK_THROWS_WITH(loadFields(bad, to.list), Catch::Contains("ends early"));
+}
+
+TEST_CASE("The configuration hash covers names, classes, shape, properties that are not state, seed and sources") {
+  const auto hashWith = [](const std::function<void(Core&)>& change) {
+    Core core;
+    core.make("a");
+    change(core);
+    return configurationHash(core.kernel.root());
+  };
+  const std::uint64_t plain = hashWith([](Core&) {});
+  CHECK(hashWith([](Core&) {}) == plain);
+  std::set<std::uint64_t> hashes{plain};
+  hashes.insert(hashWith([](Core& c) { c.make("b"); }));
+  hashes.insert(hashWith([](Core& c) { c.top->child("a")->setName("b"); }));
+  hashes.insert(hashWith([](Core& c) { c.top->find<Thing>("a")->list_ = {0.5}; }));
+  hashes.insert(hashWith([](Core& c) { c.kernel.setSeed(2); }));
+  hashes.insert(hashWith([](Core& c) { c.kernel.sources().add("file", "x", "one"); }));
+  hashes.insert(hashWith([](Core& c) { c.kernel.sources().add("file", "x", "two"); }));
+  CHECK(hashes.size() == 7);
+  // State is not in it, nor what the program shows.
+  CHECK(hashWith([](Core& c) { c.top->find<Thing>("a")->mass_ = 3; }) == plain);
+  CHECK(hashWith([](Core& c) { c.kernel.create("Node", "/sys/host/view"); }) ==
+        hashWith([](Core& c) { c.kernel.create("Node", "/sys/host"); }));
+  // The same text twice is one source, and their order does not count.
+  CHECK(hashWith([](Core& c) {
+          for (const char* name : {"x", "y", "x"}) c.kernel.sources().add("file", name, "one");
+        }) == hashWith([](Core& c) {
+          for (const char* name : {"y", "x"}) c.kernel.sources().add("file", name, "one");
+        }));
+}
+
+TEST_CASE("Streams that are seeded after loading are those that would have been seeded") {
+  Core core, other;
+  const auto fresh = [](Core& c) { return RandomStream(*c.top, "later"); };
+  fresh(core).bits();
+  fresh(core).bits();
+  const std::string bytes = saved(core.kernel.root());
+  StateReader in(bytes);
+  loadTree(other.kernel.root(), in);
+  CHECK(fresh(other).bits() == fresh(core).bits());
+  CHECK(stateHash(other.kernel.root()) == stateHash(core.kernel.root()));
 }

@@ -117,7 +117,8 @@ std::string Host::run() {
   writeStatus(json, StatusReporters().read(kernel_));
   json.member("agentsSeen", integerAt(root, kGameControl, "agentsSeen"));
   json.member("messagesDropped", messagesDropped(root)).member("faults", root.kernel().faults());
-  json.member("stateHash", fmt::format("{:016x}", stateHash(root))).endObject();
+  json.member("stateHash", fmt::format("{:016x}", stateHash(root)));
+  json.member("configurationHash", fmt::format("{:016x}", configurationHash(root))).endObject();
   return line;
 }
 

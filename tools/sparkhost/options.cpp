@@ -58,6 +58,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
       "--check", out.check,
       "Run the config and import scenes, but no cycle; exit code 0, or 2 after errors, including those of scenes "
       "that a run only logs");
+  auto* hashes =
+      app.add_option("--hashes", out.hashes, "Write hashes of state and configuration to a file, a line for a cycle")
+          ->type_name("FILE")
+          ->excludes("--check");
+  app.add_option("--hash-every", out.hashEvery, "With --hashes: only every N-th cycle (default 1)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->needs(hashes);
   app.add_flag("--histogram", out.histogram, "Print a table of the delay and duration of cycles to stderr at the end");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print the description of a class, and end")

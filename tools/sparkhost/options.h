@@ -32,6 +32,8 @@ struct Options {
   std::string logLevel = "info";
   std::string describe;  ///< --describe: name of a class; "": not given
   bool check = false, listPlugins = false, histogram = false;
+  std::string hashes;          ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
+  std::int64_t hashEvery = 1;  ///< --hash-every
   bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
 

@@ -11,6 +11,7 @@
 #include "crash_report.h"
 #include "describe.h"
 #include "hang_watch.h"
+#include "hash_log.h"
 #include "host.h"
 #include "spark/error.h"
 #include "status_line.h"
@@ -98,6 +99,7 @@ int sparkhost::runProgram(int argc, char** argv) {
     HangWatch::install(host->kernel());
     host->build();
     if (options.check) checkLog(host->kernel());
+    if (!options.hashes.empty()) HashLog::install(host->kernel(), options.hashes, options.hashEvery);
     if (!options.check) firstLine = host->open();
   });
   bool written = true;

@@ -10,6 +10,7 @@
 #include "class_registry.h"
 #include "spark/error.h"
 #include "spark/random.h"
+#include "spark/state.h"
 #include "tree.h"
 
 namespace spark {
@@ -19,6 +20,7 @@ struct Kernel::Parts {
   explicit Parts(Kernel& kernel) : events(kernel), tree(kernel), classes(kernel) {}
   Log log;
   Jobs jobs;
+  Sources sources;
   Events events;
   detail::Tree tree;
   detail::ClassRegistry classes;
@@ -133,6 +135,31 @@ std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {
   const std::lock_guard lock(parts_->streamMutex);
   const std::uint32_t ordinal = parts_->streamOrdinals[h]++;  // different streams of one key get different seeds
   return hashBytes(key, parts_->seed ^ (static_cast<std::uint64_t>(ordinal) << 32));
+}
+
+Sources& Kernel::sources() { return parts_->sources; }
+
+void Sources::add(std::string_view kind, std::string_view name, std::string_view text) {
+  all_.insert({std::string(kind), std::string(name), hashBytes(text)});
+}
+
+void Kernel::saveState(StateWriter& out) const {
+  const std::lock_guard lock(parts_->streamMutex);
+  out.write(static_cast<std::int64_t>(parts_->streamOrdinals.size()));
+  for (const auto& [key, count] : parts_->streamOrdinals) {
+    out.write(key);
+    out.write(static_cast<std::int64_t>(count));
+  }
+}
+
+void Kernel::loadState(StateReader& in) {
+  std::map<std::uint64_t, std::uint32_t> ordinals;
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    const auto key = static_cast<std::uint64_t>(in.readInteger());
+    ordinals[key] = static_cast<std::uint32_t>(in.readInteger());
+  }
+  const std::lock_guard lock(parts_->streamMutex);
+  parts_->streamOrdinals = std::move(ordinals);
 }
 
 void Kernel::requestStop() { parts_->stop.store(true); }

@@ -1,117 +1,41 @@
 #include "spark/state.h"
 
-#include <fmt/format.h>
-
-#include <bit>
-#include <cstring>
 
 #include "spark/class_object.h"
-#include "spark/error.h"
+#include "spark/kernel.h"
 #include "spark/node.h"
 #include "tree.h"
 
 namespace spark {
 
-/// Mixes a word into the hash, and keeps its bytes, the lowest first. The multipliers are those of MurmurHash3's 64-bit
-/// finaliser (Appleby).
-void StateWriter::word(std::uint64_t w) {
-  a_ = std::rotl(a_ ^ (w * 0xff51afd7ed558ccdull), 29) * 0xc4ceb9fe1a85ec53ull + 0x9e3779b97f4a7c15ull;
-  ++count_;
-  if (keep_)
-    for (int i = 0; i < 8; ++i) bytes_.push_back(static_cast<char>(w >> (8 * i)));
-}
+namespace {
+/// True for the root of a kernel's tree, with which the kernel saves its own state.
+bool isRoot(const Leaf& leaf) { return leaf.isLinked() && !leaf.parent(); }
 
-void StateWriter::write(double v) { word(std::bit_cast<std::uint64_t>(v)); }
-void StateWriter::write(std::int64_t v) { word(static_cast<std::uint64_t>(v)); }
-
-void StateWriter::write(std::string_view v) {
-  // The length, then eight bytes in a word; the last word is filled with zeros.
-  word(v.size());
-  for (std::size_t i = 0; i < v.size(); i += 8) {
-    std::uint64_t w = 0;
-    for (std::size_t k = 0; k < 8 && i + k < v.size(); ++k)
-      w |= static_cast<std::uint64_t>(static_cast<unsigned char>(v[i + k])) << (8 * k);
-    word(w);
-  }
-}
-
-void StateWriter::write(const Value& v) {
-  word(static_cast<std::uint64_t>(v.type()));
-  switch (v.type()) {
-    case Value::Type::nil:
-      break;
-    case Value::Type::boolean:
-      write(v.toBool());
-      break;
-    case Value::Type::integer:
-      write(v.toInteger());
-      break;
-    case Value::Type::number:
-      write(v.toNumber());
-      break;
-    case Value::Type::string:
-      write(std::string_view(v.toString()));
-      break;
-    case Value::Type::list:
-      word(v.toList().size());
-      for (const Value& e : v.toList()) write(e);
-  }
-}
-
-std::uint64_t StateWriter::hash() const {
-  // MurmurHash3's finaliser.
-  std::uint64_t h = a_ ^ count_;
-  h = (h ^ (h >> 33)) * 0xff51afd7ed558ccdull;
-  h = (h ^ (h >> 33)) * 0xc4ceb9fe1a85ec53ull;
-  return h ^ (h >> 33);
-}
-
-std::uint64_t StateReader::word() {
-  if (bytes_.size() < 8) throw Error("saved state ends early");
-  std::uint64_t w = 0;
-  for (int i = 0; i < 8; ++i) w |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes_[i])) << (8 * i);
-  bytes_.remove_prefix(8);
-  return w;
-}
-
-double StateReader::readNumber() { return std::bit_cast<double>(word()); }
-std::int64_t StateReader::readInteger() { return static_cast<std::int64_t>(word()); }
-
-std::string StateReader::readString() {
-  const std::uint64_t n = word();
-  if (n > bytes_.size()) throw Error("saved state ends early");
-  std::string out;
-  while (out.size() < n) {
-    const std::uint64_t w = word();
-    for (int k = 0; k < 8 && out.size() < n; ++k) out.push_back(static_cast<char>(w >> (8 * k)));
-  }
-  return out;
-}
-
-Value StateReader::readValue() {
-  // The numbers of Value::Type, which saved files contain.
-  switch (const std::uint64_t type = word()) {
-    case 0:
-      return {};
-    case 1:
-      return readBool();
-    case 2:
-      return readInteger();
-    case 3:
-      return readNumber();
-    case 4:
-      return readString();
-    case 5: {
-      List list;
-      for (std::uint64_t n = word(); n > 0; --n) list.push_back(readValue());
-      return list;
+void writeConfiguration(const Leaf& leaf, StateWriter& out) {
+  out.write(leaf.name());
+  if (ClassObject* type = leaf.classObject()) {
+    out.write(type->name());
+    for (const Property* p : type->properties()) {
+      if (p->readOnly || p->state || p->name == "name") continue;
+      out.write(p->name);
+      out.write(p->get(leaf));
     }
-    default:
-      throw Error(fmt::format("saved state holds a value of unknown type {}", type));
+  }
+  const Node* const node = leaf.asNode();
+  out.write(node ? static_cast<std::int64_t>(node->children().size()) : -1);
+  if (!node) return;
+  const bool top = isRoot(leaf);
+  for (const auto& c : node->children()) {
+    const std::string path =
+        top || (leaf.name() == "sys" && leaf.parent() && isRoot(*leaf.parent())) ? c->path() : std::string();
+    if (path != "/classes" && path != "/plugins" && path != "/sys/host") writeConfiguration(*c, out);
   }
 }
+}  // namespace
 
 void saveTree(const Leaf& leaf, StateWriter& out) {
+  if (isRoot(leaf)) leaf.kernel().saveState(out);
   if (leaf.classObject())
     for (const Property* p : leaf.classObject()->stateProperties()) out.write(p->get(leaf));
   detail::Tree::saveState(leaf, out);
@@ -120,6 +44,7 @@ void saveTree(const Leaf& leaf, StateWriter& out) {
 }
 
 void loadTree(Leaf& leaf, StateReader& in) {
+  if (isRoot(leaf)) leaf.kernel().loadState(in);
   if (leaf.classObject())
     for (const Property* p : leaf.classObject()->stateProperties()) {
       const Value v = in.readValue();
@@ -134,6 +59,18 @@ void loadTree(Leaf& leaf, StateReader& in) {
 std::uint64_t stateHash(const Leaf& root) {
   StateWriter out(false);
   saveTree(root, out);
+  return out.hash();
+}
+
+std::uint64_t configurationHash(const Leaf& root) {
+  StateWriter out(false);
+  out.write(root.kernel().seed());
+  for (const Sources::Source& s : root.kernel().sources().all()) {
+    out.write(s.kind);
+    out.write(s.name);
+    out.write(s.hash);
+  }
+  writeConfiguration(root, out);
   return out.hash();
 }
 

@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "environment.h"
+#include "memory.h"
 #include "nodes.h"
+#include "runtime.h"
 #include "spark/error.h"
 #include "spark/leaf.h"
-#include "spark/random.h"
 #include "state.h"
 #include "values.h"
 
@@ -192,13 +193,6 @@ int sortTable(lua_State* L) {
   }
   return 0;
 }
-
-/// The random numbers of an environment. The first draw seeds them from the owner's path, so the owner must exist then.
-struct Stream {
-  Ref<Leaf> owner;
-  RandomStream numbers;
-  bool seeded = false;
-};
 
 /// The stream of a function, which is its upvalue.
 Stream& streamOf(lua_State* L) {
@@ -418,10 +412,14 @@ void pushEnvironment(lua_State* L, Leaf& node, bool config) {
   lua_pushvalue(L, -1);
   lua_setfield(L, -2, "_G");
 
+  const int environment = lua_gettop(L);
+  lua_newtable(L);
+  lua_setfield(L, environment, "state");
   // Each environment has its own random numbers.
   lua_getfield(L, -1, "math");
   new (lua_newuserdatauv(L, sizeof(Stream), 0)) Stream{Ref<Leaf>(&node), RandomStream(node, "script")};
   luaL_setmetatable(L, kStreamType);
+  State::of(L).runtime().memory.add(L, node, environment);
   lua_pushvalue(L, -1);
   lua_pushcclosure(L, guarded<drawRandom>, 1);
   lua_setfield(L, -3, "random");

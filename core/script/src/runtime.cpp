@@ -77,7 +77,8 @@ Script Runtime::read(std::string_view file, std::string_view what, std::vector<f
 }
 
 void Runtime::load(lua_State* L, std::string_view text, std::string_view chunkName, int environment) {
-  constexpr const char* kTextOnly = "t";  // binary chunks could crash Lua
+  constexpr const char* kTextOnly = "t";                                             // binary chunks could crash Lua
+  State::of(L).runtime().kernel.sources().add("script", chunkName.substr(1), text);  // without Lua's mark of its kind
   if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), kTextOnly) != LUA_OK) lua_error(L);
   lua_pushvalue(L, environment);
   lua_setupvalue(L, -2, 1);  // the first upvalue of a chunk is _ENV

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "memory.h"
 #include "settings.h"
 #include "spark/kernel.h"
 #include "state.h"
@@ -68,6 +69,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   std::vector<std::filesystem::path> folders;                ///< searched for scripts
   std::shared_ptr<State> trusted;                            ///< the state of all trusted scripts
   std::vector<std::weak_ptr<State>> sandboxes;               ///< the states of untrusted scripts
+  Memory memory;                                             ///< what scripts keep
   std::filesystem::path configFolder;                        ///< of the running config, or else of the last one
   bool inConfig = false;                                     ///< a config runs: overrides shield members
   Ref<Leaf> scriptNode;                                      ///< of the running script; the root for configs

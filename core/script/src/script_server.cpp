@@ -32,6 +32,12 @@ ScriptServer::~ScriptServer() = default;
 
 void ScriptServer::onLink() { impl_ = std::make_shared<Impl>(kernel()); }
 void ScriptServer::onUnlink() { impl_->close(); }
+void ScriptServer::saveState(StateWriter& out) const {
+  if (impl_) impl_->memory.save(out);
+}
+void ScriptServer::loadState(StateReader& in) {
+  if (impl_) impl_->memory.load(in);
+}
 
 // A script may remove the script server, so every function that runs one keeps the runtime until it returns.
 

@@ -2,6 +2,7 @@
 /// \file
 /// Getting up from belly, back or side: keyframes, the same for both sides of the body, with feedback at the end.
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -32,11 +33,21 @@ class GetUp {
   /// Starts `movement`, which must outlive its execution. `from`: the current pose.
   void start(const Movement& movement, const Pose& from);
   void stop() { movement_ = nullptr; }
+  /// Goes on with the movement of loaded fields; nullptr: with none.
+  void resume(const Movement* movement) {
+    movement_ = movement;
+    if (movement) frame_ = std::min(frame_, movement->frames.size() - 1);
+  }
   bool playing() const { return movement_ != nullptr; }
   /// True for one cycle after the first frame: the time to check that the robot still lies on the same side.
   bool begun() const { return frame_ == 1 && time_ == 0; }
   /// Sets `pose` for the next cycle.
   void step(const Percepts& percepts, const Posture& posture, Pose& pose);
+  /// Its state without the movement.
+  template <class F>
+  void fields(F& f) {
+    f(frame_, time_, from_, to_);
+  }
 
  private:
   const Movement* movement_ = nullptr;

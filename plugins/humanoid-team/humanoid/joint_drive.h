@@ -15,6 +15,10 @@ class JointDrive {
   /// Appends one command per joint. `wanted`, `measured`: angles [rad]; `share`: fraction of the remaining angle to
   /// cover in one cycle, 0..1.
   void drive(const Pose& wanted, const Pose& measured, double share, spark::Predicates& out);
+  template <class F>
+  void fields(F& f) {
+    f(underWay_);
+  }
 
  private:
   const Build& build_;

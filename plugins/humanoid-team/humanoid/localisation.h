@@ -25,6 +25,10 @@ class Localisation {
   Vec2 toRobot(const Vec2& onField) const;
   /// Marks the pose as unknown.
   void lose() { age_ = kTrust; }
+  template <class F>
+  void fields(F& f) {
+    f(place_, heading_, age_, nod_);
+  }
 
  private:
   static constexpr double kTrust = 3;  ///< time for which odometry alone is trusted [s]

@@ -51,6 +51,11 @@ struct Percepts {
   std::vector<SeenPlayer> players;
   std::optional<Vec3> ball;        ///< head frame [m]
   std::vector<std::string> heard;  ///< messages of team-mates
+  /// What is kept from message to message.
+  template <class F>
+  void fields(F& f) {
+    f(now, gameTime, playMode, side, unum, scoreLeft, scoreRight, gyro, acceleration, joints);
+  }
 };
 
 /// Reads a sense message for a player of `team` into `out`. Skips unknown percepts.

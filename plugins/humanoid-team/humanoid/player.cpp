@@ -249,7 +249,8 @@ void HumanoidPlayer::getUp() {
   if (percepts_.now - triedAt_ > kForgets) attempts_ = 0;
   triedAt_ = percepts_.now;
   const bool again = ++attempts_ % 3 == 0;
-  getUp_.start(movementOf(type_, again ? other.at(static_cast<std::size_t>(fell_)) : fell_), pose_);
+  risesFrom_ = again ? other.at(static_cast<std::size_t>(fell_)) : fell_;
+  getUp_.start(movementOf(type_, risesFrom_), pose_);
   rise();
 }
 

@@ -34,11 +34,24 @@ class HumanoidPlayer {
   const Vec2& ball() const { return ball_; }
   /// The current task.
   Task task() const { return task_; }
+  /// All that it remembers, as state.
+  template <class F>
+  void fields(F& f) {
+    bool rises = getUp_.playing();
+    f(team_, unum_, percepts_, posture_, localisation_, drive_, walk_, getUp_, rises, risesFrom_, fell_, pose_, task_);
+    f(walking_, attempts_, roseAt_, triedAt_, uprightAt_, footAt_, initAt_, beamAt_, lyingSince_, pausedSince_);
+    f(ballFromHere_, ball_, ballAt_, mates_, others_, restart_, barredSince_);
+    getUp_.resume(rises ? &movementOf(type_, risesFrom_) : nullptr);
+  }
 
  private:
   /// The last message of a team-mate.
   struct Mate {
     double heardAt = -10, toBall = 1e9;  ///< time of the message [s]; length of its path to the ball [m]
+    template <class F>
+    void fields(F& f) {
+      f(heardAt, toBall);
+    }
   };
 
   /// An observed player.
@@ -47,6 +60,10 @@ class HumanoidPlayer {
     int unum;
     double seenAt;  ///< time of the observation [s]
     Vec2 place;     ///< team's frame [m]
+    template <class F>
+    void fields(F& f) {
+      f(team, unum, seenAt, place);
+    }
   };
 
   void sense(const spark::Predicates& message);
@@ -79,7 +96,8 @@ class HumanoidPlayer {
   const Gait& gait_;
   Walk walk_;
   GetUp getUp_;
-  Lying fell_ = Lying::no;  ///< the side on which it lay when it started to get up
+  Lying risesFrom_ = Lying::no;  ///< the side of the movement that getUp_ plays, or played last
+  Lying fell_ = Lying::no;       ///< the side on which it lay when it started to get up
   Pose pose_{};
   Task task_ = Task::stand;
   bool walking_ = false;

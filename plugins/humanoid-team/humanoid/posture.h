@@ -27,6 +27,10 @@ class Posture {
   Lying lying() const;
   /// Rotation from the torso's frame to a level frame with the same heading.
   Mat3 level() const;
+  template <class F>
+  void fields(F& f) {
+    f(up_);
+  }
 
  private:
   Vec3 up_{0, 0, 1};

@@ -33,6 +33,10 @@ const Gait& gaitOf(int type);
 /// A walking velocity in the robot's frame.
 struct Velocity {
   double forward = 0, right = 0, turn = 0;  ///< m/s, m/s, rad/s; turn is positive to the left
+  template <class F>
+  void fields(F& f) {
+    f(forward, right, turn);
+  }
 };
 
 /// Generates the leg angles of a walk.
@@ -50,6 +54,10 @@ class Walk {
   const Velocity& velocity() const { return now_; }
   /// True while it steps on the spot with both feet on the ground: it may be stopped then.
   bool mayStop() const;
+  template <class F>
+  void fields(F& f) {
+    f(phase_, strength_, blended_, from_, sole_, now_);
+  }
 
  private:
   Foot footOf(bool right, double lift, double way, const Vec2& shift) const;

@@ -33,11 +33,23 @@ class SpherePlayer {
   int otherScore() const { return side_ == "right" ? left_ : right_; }
   /// Simulated time of the last sense message [s].
   double time() const { return now_; }
+  /// All that it remembers, as state.
+  template <class F>
+  void fields(F& f) {
+    f(team_, scene_, side_, playMode_, unum_, left_, right_, seesField_, seesBall_, placed_, now_, joinedAt_,
+      ballTime_);
+    f(fieldTime_, modeSince_, caughtAt_, halfLength_, halfWidth_, goalHalfWidth_, self_, ball_, toBall_, ballVelocity_);
+    f(driven_, velocity_, taker_, takerUntil_, others_);
+  }
 
  private:
   /// A point or vector in the team's frame: opponents' goal at +x, y to the left [m].
   struct Point {
     double x = 0, y = 0;
+    template <class F>
+    void fields(F& f) {
+      f(x, y);
+    }
     Point operator+(Point o) const { return {x + o.x, y + o.y}; }
     Point operator-(Point o) const { return {x - o.x, y - o.y}; }
     Point operator*(double k) const { return {x * k, y * k}; }
@@ -50,6 +62,10 @@ class SpherePlayer {
     bool mate = false;
     int unum = 0;
     Point place;
+    template <class F>
+    void fields(F& f) {
+      f(mate, unum, place);
+    }
   };
 
   /// A kick; `to`: number of the team-mate that it is for, 0: none.

@@ -40,6 +40,9 @@ class PropertyBuilder {
   PropertyBuilder& choices(std::vector<std::string> texts) { return get().choices = std::move(texts), *this; }
   /// The property is part of the state hash and of saved state.
   PropertyBuilder& state() { return get().state = true, *this; }
+  /// The property tells of the process and not of the simulation: times on the clock, counts since the start, what a
+  /// cache holds. A run that goes on from saved state has other values. It cannot be set.
+  PropertyBuilder& ofProcess() { return get().ofProcess = true, readOnly(); }
   /// The property cannot be set.
   PropertyBuilder& readOnly() { return get().readOnly = true, get().set = nullptr, *this; }
 

@@ -19,6 +19,7 @@
 #include "spark/node.h"
 #include "spark/plugin.h"
 #include "spark/plugin_object.h"
+#include "spark/sources.h"
 
 namespace spark {
 
@@ -102,6 +103,13 @@ class Kernel {
   void countFault();
   /// The number of faults so far. Not part of the state. Thread safe.
   std::int64_t faults() const;
+
+  /// The texts that the simulation was made of.
+  Sources& sources();
+  /// Writes the state that no node has: how many streams have been seeded for which owner and purpose.
+  void saveState(StateWriter& out) const;
+  /// Reads what saveState() wrote. Throws Error where it does not fit.
+  void loadState(StateReader& in);
 
   /// The class that changes the tree; defined in the kernel's own sources only.
   detail::Tree& tree();

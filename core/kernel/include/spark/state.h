@@ -1,79 +1,26 @@
 #pragma once
 /// \file
-/// The state of a simulation: for each object in tree order the values of all properties marked `state()`, those of
-/// bases first, followed by what saveState() writes. Names, classes and the shape of the tree are not part of it, so it
-/// can be loaded only into a tree of the same shape.
+/// The state of a simulation: what the kernel keeps (Kernel::saveState()), then for each object in tree order the
+/// values of all properties marked `state()`, those of bases first, followed by what saveState() writes. Names, classes
+/// and the shape of the tree are not part of it, so it can be loaded only into a tree of the same shape.
+///
+/// All else that decides what a simulation does is its configuration: shape, classes, names, the properties that can be
+/// set and are not state, and the texts that it was made of (Sources).
 
 #include <cstdint>
-#include <string>
-#include <string_view>
 
 #include "spark/abi/spark/state.h"
-#include "spark/value.h"
+#include "spark/state_stream.h"
 
 namespace spark {
 
 class Leaf;
 
-/// Writes state as a sequence of 64-bit words: doubles by their bits, texts with their length.
-class StateWriter {
- public:
-  /// `keep` false: only the hash is computed, the bytes are not kept.
-  explicit StateWriter(bool keep) : keep_(keep) {}
-  /// Writes a number, bit by bit.
-  void write(double v);
-  /// Writes an integer.
-  void write(std::int64_t v);
-  /// Writes an integer.
-  void write(std::uint64_t v) { write(static_cast<std::int64_t>(v)); }
-  /// Writes an integer.
-  void write(int v) { write(static_cast<std::int64_t>(v)); }
-  /// Writes a bool.
-  void write(bool v) { write(static_cast<std::int64_t>(v)); }
-  /// Writes a text.
-  void write(std::string_view v);
-  /// Writes a text.
-  void write(const char* v) { write(std::string_view(v)); }
-  /// Writes a value with its type.
-  void write(const Value& v);
-  /// The hash of everything written so far.
-  std::uint64_t hash() const;
-  /// The bytes written so far; empty unless they are kept.
-  const std::string& bytes() const { return bytes_; }
-
- private:
-  void word(std::uint64_t w);
-  std::uint64_t a_ = 0x9e3779b97f4a7c15ull, count_ = 0;
-  bool keep_;
-  std::string bytes_;
-};
-
-/// Reads the bytes of a StateWriter, in the order in which they were written. Throws Error if the bytes end early or a
-/// value has an unknown type.
-class StateReader {
- public:
-  /// `bytes` must outlive the reader.
-  explicit StateReader(std::string_view bytes) : bytes_(bytes) {}
-  /// Reads a number.
-  double readNumber();
-  /// Reads an integer.
-  std::int64_t readInteger();
-  /// Reads a bool.
-  bool readBool() { return readInteger() != 0; }
-  /// Reads a text.
-  std::string readString();
-  /// Reads a value.
-  Value readValue();
-  /// True if everything has been read.
-  bool atEnd() const { return bytes_.empty(); }
-
- private:
-  std::uint64_t word();
-  std::string_view bytes_;
-};
-
 /// The hash of the state of `root` and all its descendants.
 std::uint64_t stateHash(const Leaf& root);
+/// The hash of the configuration of a linked `root` and its descendants, and of the kernel's sources. Of the whole tree
+/// it leaves out /classes, /plugins and /sys/host: what the program shows of a run.
+std::uint64_t configurationHash(const Leaf& root);
 /// Writes the state of `root` and all its descendants.
 void saveTree(const Leaf& root, StateWriter& out);
 /// Reads the state that saveTree() wrote for a tree of the same shape. Throws Error if it does not fit; a part of the

@@ -19,7 +19,8 @@ namespace spark {
 ///
 /// Globals of a config: plugin, new, get, delete, option, include, log, on, and groups of variables (lua/README.md).
 /// Scripts are deterministic: `pairs` is in order of key, `math.random` draws from a kernel stream, and there is no
-/// clock and no access to files. Binary chunks are refused.
+/// clock and no access to files. Binary chunks are refused. State are the random numbers of each script and its table
+/// `state`; what it keeps in other globals and in locals is not.
 class ScriptServer : public Leaf, public IScriptServer {
   SPARK_CLASS(ScriptServer, Leaf)
  public:
@@ -51,6 +52,8 @@ class ScriptServer : public Leaf, public IScriptServer {
  protected:
   void onLink() override;
   void onUnlink() override;
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
 
  private:
   struct Impl;

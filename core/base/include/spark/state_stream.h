@@ -1,0 +1,76 @@
+#pragma once
+/// \file
+/// Values as bytes: what saved state is made of.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "spark/abi/spark/state_stream.h"
+#include "spark/value.h"
+
+namespace spark {
+
+/// Writes state as a sequence of 64-bit words: doubles by their bits, texts with their length.
+class StateWriter {
+ public:
+  /// `keep` false: only the hash is computed, the bytes are not kept.
+  explicit StateWriter(bool keep) : keep_(keep) {}
+  /// Writes a number, bit by bit.
+  void write(double v);
+  /// Writes an integer.
+  void write(std::int64_t v);
+  /// Writes an integer.
+  void write(std::uint64_t v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes an integer.
+  void write(int v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes a bool.
+  void write(bool v) { write(static_cast<std::int64_t>(v)); }
+  /// Writes a text.
+  void write(std::string_view v);
+  /// Writes a text.
+  void write(const std::string& v) { write(std::string_view(v)); }
+  /// Writes a text.
+  void write(const char* v) { write(std::string_view(v)); }
+  /// Writes a value with its type.
+  void write(const Value& v);
+  /// The hash of everything written so far.
+  std::uint64_t hash() const;
+  /// The bytes written so far; empty unless they are kept.
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  void word(std::uint64_t w);
+  std::uint64_t a_ = 0x9e3779b97f4a7c15ull, count_ = 0;
+  bool keep_;
+  std::string bytes_;
+};
+
+/// Reads the bytes of a StateWriter, in the order in which they were written. Throws Error if the bytes end early or a
+/// value has an unknown type.
+class StateReader {
+ public:
+  /// `bytes` must outlive the reader.
+  explicit StateReader(std::string_view bytes) : bytes_(bytes) {}
+  /// Reads a number.
+  double readNumber();
+  /// Reads an integer.
+  std::int64_t readInteger();
+  /// Reads a bool.
+  bool readBool() { return readInteger() != 0; }
+  /// Reads the number of elements that follow, each of them a word at least. Throws Error also where that is more than
+  /// is left.
+  std::size_t readCount();
+  /// Reads a text.
+  std::string readString();
+  /// Reads a value.
+  Value readValue();
+  /// True if everything has been read.
+  bool atEnd() const { return bytes_.empty(); }
+
+ private:
+  std::uint64_t word();
+  std::string_view bytes_;
+};
+
+}  // namespace spark
