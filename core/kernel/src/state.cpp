@@ -1,6 +1,5 @@
 #include "spark/state.h"
 
-
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 #include "spark/node.h"
