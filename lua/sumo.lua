@@ -41,7 +41,9 @@ lamp.localPos = { 2, -2, 4 }
 lamp:new("Light", "light").diffuse = { 1, 1, 1, 1 }
 
 -- A robot: a drum that glides, with two senses and one muscle. `agent`: its aspect; `side`: 1 or 2.
+-- What must last from event to event is in `state`, which is saved with the game.
 local robots = {}
+state.robots = robots
 
 local function pose(robot)
   local m = robot.agent.localTransform
@@ -95,7 +97,7 @@ local function build(agent, side)
 end
 
 -- the rule
-local since = 0
+state.since = 0                               -- time at which the bout began [s]
 
 -- Puts a robot on its side, at rest, at a random angle.
 local function place(robot)
@@ -108,7 +110,7 @@ end
 local function begin(time)
   place(robots[1])
   place(robots[2])
-  since = time
+  state.since = time
   game.bout, game.playMode = game.bout + 1, "Fight"
 end
 
@@ -136,20 +138,19 @@ rule:on("judge", function(self, event)
   if game.playMode == "Over" or not robots[1] or not robots[2] then return end
   if game.playMode == "Wait" then return begin(event.time) end
   local out = { isOut(robots[1]), isOut(robots[2]) }
-  if not out[1] and not out[2] and event.time - since < limit then return end
+  if not out[1] and not out[2] and event.time - state.since < limit then return end
   local score = game.score
   if out[2] and not out[1] then score[1] = score[1] + 1 end
   if out[1] and not out[2] then score[2] = score[2] + 1 end
   game.score = score
-  print(string.format("bout %d took %.2f s: %d:%d", game.bout, event.time - since, score[1], score[2]))
+  print(string.format("bout %d took %.2f s: %d:%d", game.bout, event.time - state.since, score[1], score[2]))
   if bouts == 0 or game.bout < bouts then return begin(event.time) end
   game.playMode = "Over"
   get("/sys/server/simulation"):stop()
 end)
 
 -- A player: it aims beside the opponent, at another angle now and then, and turns back at the edge.
-local function play(player)
-  local aside, cycle = 0, 0
+local function play(player, mind)
   player:on("think", function(self, event)
     local sight = {}
     for _, percept in ipairs(event.data) do
@@ -157,12 +158,16 @@ local function play(player)
     end
     self.actions = ""
     if not sight.opponent then return end
-    if cycle % 50 == 0 then aside = 40 * (2 * math.random() - 1) end
-    cycle = cycle + 1
-    local aim = sight.opponent.bearing + aside
+    if mind.cycle % 50 == 0 then mind.aside = 40 * (2 * math.random() - 1) end
+    mind.cycle = mind.cycle + 1
+    local aim = sight.opponent.bearing + mind.aside
     if sight.middle.distance > 0.8 * ring then aim = sight.middle.bearing end
     local ahead = math.cos(math.rad(aim))
     self.actions = string.format("(push %.3f %.3f)", ahead, aim / 60)
   end)
 end
-for i = 1, players do play(new("ScriptBehavior", "/usr/agent/player" .. i)) end
+state.minds = {}
+for i = 1, players do
+  state.minds[i] = { aside = 0, cycle = 0 }
+  play(new("ScriptBehavior", "/usr/agent/player" .. i), state.minds[i])
+end

@@ -25,6 +25,20 @@ inline bool same(const Value& a, const Value& b) {
   return a == b;
 }
 
+/// A line for each value that the hash of the configuration holds.
+inline std::vector<std::string> configurationOf(const Leaf& leaf) {
+  std::vector<std::string> out;
+  if (ClassObject* c = leaf.classObject())
+    for (const Property* p : c->properties())
+      if (p->isConfiguration()) out.push_back(leaf.path() + "." + p->name + " = " + p->get(leaf).text());
+  if (const Node* node = leaf.asNode())
+    for (const auto& child : node->children()) {
+      const auto lines = configurationOf(*child);
+      out.insert(out.end(), lines.begin(), lines.end());
+    }
+  return out;
+}
+
 /// One line for each property of `a` and its descendants that the node at the same place below `b` has not alike, but
 /// for those that tell of the process. Trees of different shape: a line for the first difference.
 inline void compareReadable(const Leaf& a, const Leaf& b, std::vector<std::string>& out) {

@@ -93,9 +93,11 @@ class Transform : public SceneNode {
   static void describe(Description<Transform>& d) {
     d.doc("Positions the nodes below it.");
     d.property("localTransform", &Transform::local, &Transform::placeLocal)
+        .savedByClass()
         .doc("Local 4x4 matrix, column-major; each element from -1e9 to 1e9.");
     d.property("localPos", &Transform::localPos, &Transform::placeLocalPos)
         .unit("m")
+        .savedByClass()
         .doc("Local translation; each coordinate from -1e9 to 1e9 m.");
     d.property("worldTransform", &Transform::world).doc("World 4x4 matrix as of the last place phase.");
     d.method("setLocalRotation", &Transform::turnLocal)

@@ -32,6 +32,7 @@ void DrawingServer::describe(Description<DrawingServer>& d) {
   d.implements<IInputSource>();
   d.property("port", &S::port, &S::setPort)
       .range(-1, 65535)
+      .ofProcess()
       .doc("UDP port; -1: none; 0 picks a free one, which can be read once it is open.");
   d.property("address", &S::address, &S::setAddress).doc("Address of this machine to listen on; 0.0.0.0: all.");
   d.property("forward", &S::forwardTo, &S::setForwardTo)

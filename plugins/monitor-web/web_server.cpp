@@ -30,6 +30,7 @@ void WebServer::describe(Description<WebServer>& d) {
   d.property("port", &W::port, &W::setPort)
       .range(0, 65535)
       .unit("1")
+      .ofProcess()
       .doc("TCP port; 0: any free one. If it is in use, a free one is opened and logged.");
   d.property("viewer", &W::viewerFolder_)
       .doc("Folder of the built viewer, with index.html; without it a plain page is served.");

@@ -27,6 +27,7 @@ void TcpPort::describe(Description<TcpPort>& d) {
       "A listening TCP port; splits input into messages with the framing below it and delivers them to its consumer.");
   d.property("port", &TcpPort::port, &TcpPort::setPort)
       .range(0, 65535)
+      .ofProcess()
       .doc("Port number; 0 picks a free one, which can be read once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
   d.link(&TcpPort::framing_, Child<IFraming>());

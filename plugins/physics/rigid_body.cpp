@@ -12,12 +12,14 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.implements<IRigidBody>();
   d.implements<IFollowsTransform>();
   d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass. Setting it scales the inertia as well.");
-  d.property("position", &B::position, &B::setPosition).unit("m").doc("Centre of mass in the world.");
+  d.property("position", &B::position, &B::setPosition).unit("m").savedByClass().doc("Centre of mass in the world.");
   d.property("velocity", &B::velocity, &B::setVelocity)
       .unit("m/s")
+      .savedByClass()
       .doc("Velocity of the centre of mass, in the world.");
   d.property("angularVelocity", &B::angularVelocity, &B::setAngularVelocity)
       .unit("rad/s")
+      .savedByClass()
       .doc("Angular velocity, in the world.");
   d.property("connector", &B::connector, &B::setConnector)
       .doc(

@@ -74,11 +74,13 @@ void Simulation::describe(Description<Simulation>& d) {
           "[microseconds], and the numbers of cycles in it.");
   d.property("lostTime", &Simulation::lostTime_)
       .unit("s")
+      .readOnly()
       .ofProcess()
       .doc(
           "Wall time by which cycles began too late in real time, because earlier ones took longer than a step. It is "
           "not made up for.");
   d.property("lateCycles", &Simulation::lateCycles_)
+      .readOnly()
       .ofProcess()
       .doc("Number of cycles that began too late in real time.");
   d.property("faults", &Simulation::faults)

@@ -1,5 +1,7 @@
 #include <fmt/ranges.h>
 
+#include <set>
+
 #include "../readable.h"
 #include "all_plugins.h"
 #include "spark/state.h"
@@ -132,6 +134,7 @@ TEST_CASE("Each property that can be set is in the hash of the state or in that 
   SmallScene host;
   host.kernel.create("Node", "/lonely");
   int changed = 0;
+  std::set<std::string> inNone;  // names of those that tell of the process
   for (ClassObject* c : host.kernel.classes()) {
     if (!c->plugin() || c->isAbstract() || needsNetwork(*c)) continue;
     const Ref<Leaf> guest(host.insert(*c));
@@ -139,6 +142,10 @@ TEST_CASE("Each property that can be set is in the hash of the state or in that 
     for (const Property* p : c->properties()) {
       if (p->readOnly || p->name == "name") continue;
       INFO("plugin " << c->plugin()->name() << ", class " << c->name() << ", property " << p->name);
+      if (p->ofProcess) {
+        inNone.insert(p->name);
+        continue;
+      }
       const Leaf& root = host.kernel.root();
       const Value before = p->get(*guest), other = anotherOrList(*p, before);
       if (other.isNil()) continue;
@@ -155,6 +162,24 @@ TEST_CASE("Each property that can be set is in the hash of the state or in that 
     guest->parent()->remove(*guest);
   }
   CHECK(changed > 300);
+  CHECK(inNone == std::set<std::string>{"port"});
+}
+
+TEST_CASE("A run leaves the configuration as it is") {
+  SmallScene host;
+  host.kernel.create("Node", "/lonely");
+  for (ClassObject* c : host.kernel.classes()) {
+    if (!c->plugin() || c->isAbstract() || needsNetwork(*c)) continue;
+    const Ref<Leaf> guest(host.insert(*c));
+    REQUIRE(guest);
+    const auto before = configurationOf(host.kernel.root());
+    const std::uint64_t hash = configurationHash(host.kernel.root());
+    host.run(5);
+    INFO("plugin " << c->plugin()->name() << ", class " << c->name());
+    CHECK(configurationOf(host.kernel.root()) == before);
+    CHECK(configurationHash(host.kernel.root()) == hash);
+    if (guest) guest->parent()->remove(*guest);
+  }
 }
 
 TEST_CASE("A scene that is restored from saved state continues with the same hash") {

@@ -67,6 +67,7 @@ void Host::defineHostTable() {
 void Host::build() {
   scripts(kernel_).addFolder(share_ / "lua");
   defineHostTable();
+  if (options_.check) scripts(kernel_).warnOfUnsaved();
   for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
   scripts(kernel_).runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {

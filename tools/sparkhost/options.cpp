@@ -57,7 +57,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_flag(
       "--check", out.check,
       "Run the config and import scenes, but no cycle; exit code 0, or 2 after errors, including those of scenes "
-      "that a run only logs");
+      "that a run only logs; warns of handlers of scripts that keep what is not saved");
   auto* hashes =
       app.add_option("--hashes", out.hashes, "Write hashes of state and configuration to a file, a line for a cycle")
           ->type_name("FILE")

@@ -16,7 +16,7 @@ void writeConfiguration(const Leaf& leaf, StateWriter& out) {
   if (ClassObject* type = leaf.classObject()) {
     out.write(type->name());
     for (const Property* p : type->properties()) {
-      if (p->readOnly || p->state || p->name == "name") continue;
+      if (!p->isConfiguration()) continue;
       out.write(p->name);
       out.write(p->get(leaf));
     }

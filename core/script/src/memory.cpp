@@ -111,6 +111,13 @@ void load(lua_State* L, StateReader& in, int into) {
   }
   throw Error("expected a value of a script's state, found an unknown type");
 }
+
+/// Adds the addresses of the table at an absolute index and of those in it.
+void addTables(lua_State* L, int index, std::set<const void*>& out) {
+  if (!lua_istable(L, index) || !out.insert(lua_topointer(L, index)).second) return;
+  luaL_checkstack(L, 4, "tables in tables");
+  for (lua_pushnil(L); lua_next(L, index); lua_pop(L, 1)) addTables(L, lua_gettop(L), out);
+}
 }  // namespace
 
 Memory::~Memory() {
@@ -137,6 +144,21 @@ void Memory::add(lua_State* L, Leaf& owner, int environment) {
   lua_pushvalue(L, environment);
   e.environment = luaL_ref(L, LUA_REGISTRYINDEX);
   entries_.push_back(std::move(e));
+}
+
+std::set<const void*> Memory::tables(lua_State* L) {
+  std::set<const void*> out;
+  forgetGone();
+  for (const Entry& e : entries_) {
+    if (e.state.lock().get() != &State::of(L)) continue;
+    luaL_checkstack(L, 4, "tables of scripts");
+    lua_rawgeti(L, LUA_REGISTRYINDEX, e.environment);
+    pushText(L, kTable);
+    lua_rawget(L, -2);
+    addTables(L, lua_gettop(L), out);
+    lua_pop(L, 2);
+  }
+  return out;
 }
 
 void Memory::save(StateWriter& out) {

@@ -3,6 +3,7 @@
 /// Private to the script server: what scripts keep from event to event, as state.
 
 #include <memory>
+#include <set>
 #include <vector>
 
 #include "spark/random.h"
@@ -27,6 +28,8 @@ class Memory {
   /// Adds the environment at `environment`, an absolute index, of a script at `owner`; its stream is the userdata on
   /// top of the stack. It is forgotten when the owner or its Lua state is gone.
   void add(lua_State* L, Leaf& owner, int environment);
+  /// The addresses of all tables that are saved, of the scripts in the Lua state of a thread.
+  std::set<const void*> tables(lua_State* L);
   /// Writes the random numbers and the tables, in the order in which the scripts were started. A table that cannot be
   /// saved is left out, which is logged once.
   void save(StateWriter& out);

@@ -8,6 +8,7 @@
 
 #include "environment.h"
 #include "restore.h"
+#include "unsaved.h"
 #include "values.h"
 
 namespace fs = std::filesystem;
@@ -201,6 +202,13 @@ std::shared_ptr<Subscription> Runtime::subscribe(lua_State* L, Leaf& node, std::
     lua_pop(L, 1);
   } else if (const std::string near = nearChannels(channel); !near.empty()) {
     throw Error(fmt::format("there is no event channel '{}': nothing would ever run this handler.{}", channel, near));
+  }
+  if (warnsOfUnsaved) {
+    for (const std::string& line : unsavedWrites(L, -1, memory.tables(L)))
+      kernel.log().warning(
+          "{}, in a handler of '{}'. That is neither saved nor hashed: a run that goes on from saved state finds what "
+          "was there before. Keep it in the table `state` of the script.",
+          line, channel);
   }
   auto s = std::make_shared<Subscription>();
   State& state = State::of(L);

@@ -71,6 +71,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   std::vector<std::weak_ptr<State>> sandboxes;               ///< the states of untrusted scripts
   Memory memory;                                             ///< what scripts keep
   std::filesystem::path configFolder;                        ///< of the running config, or else of the last one
+  bool warnsOfUnsaved = false;                               ///< see ScriptServer::warnOfUnsaved()
   bool inConfig = false;                                     ///< a config runs: overrides shield members
   Ref<Leaf> scriptNode;                                      ///< of the running script; the root for configs
   std::vector<std::weak_ptr<Subscription>>* made = nullptr;  ///< collects the handlers of a script that is attached now

@@ -78,6 +78,8 @@ void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_vie
   running->attach(node, text, fmt::format("={}", chunkName), trusted);
 }
 
+void ScriptServer::warnOfUnsaved() { impl_->warnsOfUnsaved = true; }
+
 std::vector<List> ScriptServer::options() const { return impl_->settings.options(); }
 
 }  // namespace spark

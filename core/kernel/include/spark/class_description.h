@@ -30,9 +30,13 @@ struct Property {
   int scalars = 1;                   ///< plain arguments that `set` reads, -1 for any number
   bool readOnly = false;
   bool state = false;                     ///< part of the state hash and of saved state
-  bool ofProcess = false;                 ///< read only: tells of this process, such as a count since its start
+  bool savedByClass = false;              ///< part of what saveState() saves, or follows from it
+  bool ofProcess = false;                 ///< tells of this process, such as a count since its start
   std::function<Value(const Leaf&)> get;  ///< reads it
   std::function<void(Leaf&, Args&)> set;  ///< writes it, without checks of range and choices; empty if read only
+
+  /// True if its value is in the hash of the configuration.
+  bool isConfiguration() const { return !readOnly && !state && !savedByClass && !ofProcess && name != "name"; }
 };
 
 /// A method that can be called by its name.

@@ -40,9 +40,12 @@ class PropertyBuilder {
   PropertyBuilder& choices(std::vector<std::string> texts) { return get().choices = std::move(texts), *this; }
   /// The property is part of the state hash and of saved state.
   PropertyBuilder& state() { return get().state = true, *this; }
+  /// The property is part of what the class's saveState() saves, or follows from it, such as a body's velocity. It is
+  /// in the state hash by way of saveState(), and not in the hash of the configuration.
+  PropertyBuilder& savedByClass() { return get().savedByClass = true, *this; }
   /// The property tells of the process and not of the simulation: times on the clock, counts since the start, what a
-  /// cache holds. A run that goes on from saved state has other values. It cannot be set.
-  PropertyBuilder& ofProcess() { return get().ofProcess = true, readOnly(); }
+  /// cache holds, where the host listens. A run that goes on from saved state has other values. It is in no hash.
+  PropertyBuilder& ofProcess() { return get().ofProcess = true, *this; }
   /// The property cannot be set.
   PropertyBuilder& readOnly() { return get().readOnly = true, get().set = nullptr, *this; }
 

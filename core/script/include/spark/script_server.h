@@ -46,6 +46,9 @@ class ScriptServer : public Leaf, public IScriptServer {
   /// As attach(), for a chunk of text. `trusted` false: the script can only compute and use `self` and its descendants,
   /// with limits on instructions and memory.
   void attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted);
+  /// From now on handlers that scripts add are looked through: a warning names each global and local in which one keeps
+  /// what is neither saved nor hashed.
+  void warnOfUnsaved();
   /// The options that configs have declared: [name, default, doc, value] each.
   std::vector<List> options() const;
 
