@@ -12,7 +12,7 @@ namespace spark {
 void ZipFileSystem::describe(Description<ZipFileSystem>& d) {
   d.doc("A zip archive as file system.");
   d.implements<IFileSystem>();
-  d.property("path", &ZipFileSystem::file, &ZipFileSystem::setFile).doc("The archive.");
+  d.property("path", &ZipFileSystem::file, &ZipFileSystem::setFile).ofProcess().doc("The archive.");
   d.property("prefix", &ZipFileSystem::prefix, &ZipFileSystem::setPrefix)
       .doc("Prefix of resource names; the rest is looked up in the archive. 'rsg/' mounts the archive as rsg.");
   d.property("maxBytes", &ZipFileSystem::maxBytes_)

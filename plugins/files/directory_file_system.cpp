@@ -18,7 +18,7 @@ constexpr std::size_t kMaxCached = 10000;  // identities
 void DirectoryFileSystem::describe(Description<DirectoryFileSystem>& d) {
   d.doc("A folder as file system. Files outside of it cannot be reached, not even through links.");
   d.implements<IFileSystem>();
-  d.property("path", &DirectoryFileSystem::path_).doc("The folder.");
+  d.property("path", &DirectoryFileSystem::path_).ofProcess().doc("The folder.");
   d.property("prefix", &DirectoryFileSystem::prefix, &DirectoryFileSystem::setPrefix)
       .doc("Prefix of resource names; the rest is looked up in the folder. 'rsg/' mounts the folder as rsg.");
   d.property("maxBytes", &DirectoryFileSystem::maxBytes_).unit("bytes").min(0).doc("Larger files are refused.");

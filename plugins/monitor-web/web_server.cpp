@@ -33,8 +33,11 @@ void WebServer::describe(Description<WebServer>& d) {
       .ofProcess()
       .doc("TCP port; 0: any free one. If it is in use, a free one is opened and logged.");
   d.property("viewer", &W::viewerFolder_)
+      .ofProcess()
       .doc("Folder of the built viewer, with index.html; without it a plain page is served.");
-  d.property("viewerLacks", &W::viewerLacks_).doc("What is missing to build the viewer; shown by the plain page.");
+  d.property("viewerLacks", &W::viewerLacks_)
+      .ofProcess()
+      .doc("What is missing to build the viewer; shown by the plain page.");
   d.property("logs", &W::logs_).doc("Folder whose files are served as /logs/NAME for the viewer to play; empty: none.");
   d.property("hosts", &W::hosts_)
       .doc("Host names that browsers may use for it besides IP addresses, localhost and the machine's name; *: any.");

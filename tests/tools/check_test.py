@@ -28,6 +28,7 @@ class Check(unittest.TestCase):
         self.program("clang-format-14", "exit 0")
         self.program(self.tree / "tools/lint-words", "exit 0")
         self.program(self.tree / "tools/lint", "exit 0")
+        self.program(self.tree / "tests/system/uninitialised", "exit 0")
         self.program("cmake", "exit 0")
         self.program("dpkg-query", "echo install ok installed")
         self.program("node", "echo true")
@@ -74,9 +75,13 @@ class Check(unittest.TestCase):
         self.expect(0, "7 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs")
         self.assertEqual(len(self.stages("all")), 12)
 
-    def test_long_has_the_stages_of_all(self):
-        self.expect(0, "7 passed, 0 failed, 0 skipped", mode="--long")
-        self.assertEqual(len(self.stages("long")), 12)
+    def test_long_has_the_stages_of_all_and_valgrind(self):
+        self.expect(0, "8 passed, 0 failed, 0 skipped", mode="--long")
+        self.assertEqual(len(self.stages("long")), 13)
+
+    def test_findings_of_valgrind_are_shown(self):
+        self.program(self.tree / "tests/system/uninitialised", "echo 'Use of uninitialised value of size 8'; exit 1")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "Use of uninitialised value of size 8", "valgrind: tests/system/uninitialised", mode="--long")
 
     def test_time_decides_nothing(self):
         self.program("cmake", "sleep 0.5")  # a slow build

@@ -44,7 +44,7 @@ class PropertyBuilder {
   /// in the state hash by way of saveState(), and not in the hash of the configuration.
   PropertyBuilder& savedByClass() { return get().savedByClass = true, *this; }
   /// The property tells of the process and not of the simulation: times on the clock, counts since the start, what a
-  /// cache holds, where the host listens. A run that goes on from saved state has other values. It is in no hash.
+  /// cache holds, where the host listens or has its files. It is in no hash: a run from saved state has other values.
   PropertyBuilder& ofProcess() { return get().ofProcess = true, *this; }
   /// The property cannot be set.
   PropertyBuilder& readOnly() { return get().readOnly = true, get().set = nullptr, *this; }
