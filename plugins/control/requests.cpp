@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "api/inputs.h"
 #include "api/phases.h"
 #include "spark/error.h"
 
@@ -210,14 +211,21 @@ IRequestHandler* handlerOf(const Node& self, std::string_view what) {
   return nullptr;
 }
 
+bool changesSomething(std::string_view what) {
+  return what == "set" || what == "call" || what == "load" || what == "unload";
+}
+
 std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange) {
   const Json request = Json::parse(line);
   if (!request.is_object()) throw Error("expected one JSON object a line");
   const std::string what = textOf(request, "do");
-  if (!mayChange && (what == "set" || what == "call" || what == "load" || what == "unload"))
+  if (!mayChange && changesSomething(what))
     throw Error(fmt::format(
         "'{}' changes the match, which only the referee may: log in with the token that the host printed at its start",
         what));
+  if (auto* tape = kernel.root().find<IInputTape>();
+      tape && changesSomething(what) && !tape->put({.kind = Input::Kind::request, .text = line}))
+    throw Error("a recording is played: nothing can be changed in it");
   if (what == "tree") return dump(tree(kernel, request, mayChange ? kMaxNodes : kMaxNodesForSpectators));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));

@@ -19,6 +19,7 @@ void GameControl::describe(Description<GameControl>& d) {
   d.doc("Creates agents for connections and behaviours, dispatches their actions, calls their perceptors.");
   d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
       .doc("Reads the identity of agents that join; without it they have none.");
+  d.link(&GameControl::tape_, At<IInputTape>()).doc("Records the wall clock where it decides, or plays it.");
   d.link(&GameControl::judges_, Child<IAgentJudge>()).doc("Judge what agents ask for and do.");
   d.property("requests", &GameControl::requests_)
       .doc(
@@ -147,7 +148,7 @@ bool GameControl::full() const {
 
 void GameControl::connected(IConnection& connection) {
   if (full()) return connection.close(fmt::format("there are {} agents already (maxAgents)", maxAgents_));
-  newcomers_.push_back(std::make_unique<Participant>(connection));
+  newcomers_.push_back(std::make_unique<Participant>(connection, now()));
   newcomers_.back()->resolveParser(*this);
 }
 
@@ -157,7 +158,7 @@ void GameControl::received(IConnection& connection, std::string_view message) {
   resolveParsers();
   const std::string why = !p->heardFrom() && full()
                               ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
-                              : p->receive(message, static_cast<std::size_t>(maxPending_), agentLog(), cycle_);
+                              : p->receive(message, static_cast<std::size_t>(maxPending_), agentLog(), cycle_, now());
   if (why.empty()) {
     if (holding()) gamecontrol::Hold::onMessage(*p, joinPolicy_.get());
     return;
@@ -199,9 +200,10 @@ std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& req
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
   if (holding())
-    return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get()}, kernel().log());
+    return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get(), now()},
+                        kernel().log());
   if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
-  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_});
+  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_}, now());
 }
 
 void GameControl::closeWithoutRobot() {
@@ -222,7 +224,12 @@ bool GameControl::mayLoad(const AgentAspect& agent) {
   if (realTime()) return loads_++ < loadsPerCycle_;
   const Participant* p = participantOf(agent);
   loadBudget_.setCapacity(2 * maxAgents_);
-  return !p || p->inside() || p->expected() || loadBudget_.take(Clock::now());
+  return !p || p->inside() || p->expected() || loadBudget_.take(now());
+}
+
+GameControl::Clock::time_point GameControl::now() const {
+  const auto live = Clock::now();
+  return tape_ ? tape_->time(live) : live;
 }
 
 bool GameControl::realTime() const {
@@ -233,7 +240,7 @@ bool GameControl::realTime() const {
 void GameControl::act(const Event& event) {
   const InUse acting(*this, "agents act just now");
   cycle_ = event.cycle;
-  actedAt_ = Clock::now();
+  actedAt_ = now();
   lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
@@ -294,9 +301,9 @@ void GameControl::sense(const Event& event) {
 }
 
 void GameControl::deliver() {
-  const auto now = Clock::now();
+  const auto at = now();
   for (const auto& p : participants_)
-    if (!p->deliver(agentLog(), cycle_, now)) ++messagesDropped_;
+    if (!p->deliver(agentLog(), cycle_, at, tape_.get())) ++messagesDropped_;
 }
 
 void GameControl::removeLeaving() {
@@ -339,7 +346,7 @@ void GameControl::joinBehaviors() {
     auto* const aspect = i < atHome ? nullptr : b->ancestor<AgentAspect>();
     if (i >= atHome && (!aspect || aspect->number() != 0 || &aspect->outermost() != aspect)) continue;
     const std::uint64_t id = b->id();
-    if (!join(std::make_unique<Participant>(*b), aspect)) refusedBehaviors_.push_back(id);
+    if (!join(std::make_unique<Participant>(*b, actedAt_), aspect)) refusedBehaviors_.push_back(id);
   }
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
 }
@@ -371,7 +378,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
     }
     aspect->setNumber(number);
     if (requests_) RequestEffector::addTo(*aspect, robotFolder_);
-    p.join(number, *aspect, {std::size_t{!ready} + requests_, requests_});
+    p.join(number, *aspect, {std::size_t{!ready} + requests_, requests_}, actedAt_);
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
     if (p.connection()) p.connection()->close("no agent could be made for it");

@@ -68,6 +68,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   bool full() const;
   void closeWithoutRobot();
   bool realTime() const;
+  /// The wall clock, as of the tape.
+  Clock::time_point now() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
   const Participant* participantOf(const AgentAspect& agent) const;
@@ -88,6 +90,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
+  Link<IInputTape> tape_;
   Links<IAgentJudge> judges_;
   gamecontrol::JudgeList activeJudges_;  ///< of this turn
   std::optional<gamecontrol::AgentLog> log_;

@@ -66,7 +66,7 @@ void Hold::onMessage(Participant& p, const IJoinPolicy* policy) {
 bool Hold::isReady(const Participant& p) const { return complete(p) || (timedOut_ && !p.leaving() && sent(p, kScene)); }
 
 bool Hold::isOver(const List& newcomers, const Terms& terms, Log& log) {
-  const auto now = Clock::now();
+  const auto now = terms.now;
   updateProgress(newcomers, terms.policy, now);
   const auto ready =
       static_cast<int>(std::count_if(newcomers.begin(), newcomers.end(), [](const auto& p) { return complete(*p); }));

@@ -28,8 +28,8 @@ void LockstepGate::beginCycle(Clock::time_point now) {
 /// Seconds that this cycle has waited.
 double LockstepGate::waited(Clock::time_point now) const { return secondsBetween(waitingSince_, now); }
 
-bool LockstepGate::isOpen(const List& participants, const List& newcomers, const Limits& limits) {
-  const auto now = Clock::now();
+bool LockstepGate::isOpen(const List& participants, const List& newcomers, const Limits& limits,
+                          Clock::time_point now) {
   if (!std::exchange(waiting_, true)) waitingSince_ = now;
   const auto joins = [](const auto& p) { return p->joining(); };
   const bool anyJoins = std::any_of(participants.begin(), participants.end(), joins) ||

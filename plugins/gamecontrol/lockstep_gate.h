@@ -30,7 +30,7 @@ class LockstepGate {
   /// Sets the capacity of the budget [s].
   void setBudget(double seconds) { budget_.setCapacity(seconds); }
   /// True if the next cycle may begin. May disconnect agents, or give up waiting for them.
-  bool isOpen(const List& participants, const List& newcomers, const Limits& limits);
+  bool isOpen(const List& participants, const List& newcomers, const Limits& limits, Clock::time_point now);
   /// A cycle begins.
   void beginCycle(Clock::time_point now);
   /// True if the budget is not used up, as of the last wait: then answers count for an agent's trust.

@@ -14,17 +14,25 @@ namespace {
 constexpr std::size_t kMaxLineLength = 300;  // of a log line, which may contain text from a client
 }  // namespace
 
-Participant::Participant(IConnection& connection)
-    : label_(fmt::format("agent at {}", connection.peer())), connection_(&connection), inside_(false) {}
+Participant::Participant(IConnection& connection, Clock::time_point now)
+    : label_(fmt::format("agent at {}", connection.peer())),
+      connection_(&connection),
+      inside_(false),
+      joinedAt_(now),
+      lastHeard_(now) {}
 
-Participant::Participant(Behavior& behavior)
-    : label_(fmt::format("agent of {}", behavior.path())), behavior_(&behavior), inside_(true) {}
+Participant::Participant(Behavior& behavior, Clock::time_point now)
+    : label_(fmt::format("agent of {}", behavior.path())),
+      behavior_(&behavior),
+      inside_(true),
+      joinedAt_(now),
+      lastHeard_(now) {}
 
-void Participant::join(int number, AgentAspect& aspect, Given given) {
+void Participant::join(int number, AgentAspect& aspect, Given given, Clock::time_point now) {
   given_ = given;
   number_ = number;
   aspect_ = &aspect;
-  joinedAt_ = Clock::now();
+  joinedAt_ = now;
   label_ = fmt::format("agent {} ({})", number, inside_ ? behavior()->path() : connection_->peer());
   if (inside_) behavior()->start(actions_.pending());
 }
@@ -71,9 +79,10 @@ void Participant::resolveParser(Node& gameControl) {
   parser_ = own ? own : child.find(gameControl);
 }
 
-std::string Participant::receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle) {
+std::string Participant::receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle,
+                                 Clock::time_point now) {
   heardFrom_ = true;
-  lastHeard_ = Clock::now();
+  lastHeard_ = now;
   latency_.onMessage(lastHeard_);
   if (!actions_.reserve(message.size(), maxPending))
     return fmt::format("it sent more than {} bytes within one cycle", maxPending);
@@ -202,14 +211,16 @@ void Participant::encode() {
   if (!percepts().empty() && connection_ && parser_) parser_->write(percepts(), message_);
 }
 
-bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now) {
+bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
   if (leaving()) return true;
   if (percepts().empty() && !(inside_ && blind_ && hasRobot_)) return true;
   if (inside_) {
     think(log, cycle);
     return true;
   }
-  if (!connection_->send(message_)) return false;
+  bool sent = connection_->send(message_);
+  if (tape) sent = tape->decide("sent", static_cast<std::uint64_t>(number_), sent, true);
+  if (!sent) return false;
   ++sent_;
   latency_.onPercepts(now);
   // The actions that were held back answer the first percepts.

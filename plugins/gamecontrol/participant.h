@@ -25,6 +25,7 @@
 #include <string_view>
 
 #include "api/agents.h"
+#include "api/inputs.h"
 #include "gamecontrol/action_queue.h"
 #include "gamecontrol/agent_log.h"
 #include "gamecontrol/effector_table.h"
@@ -46,9 +47,9 @@ inline constexpr std::string_view kSync = "syn";
 class Participant {
  public:
   /// A client. The connection must outlive it or be removed by disconnect().
-  explicit Participant(IConnection& connection);
+  Participant(IConnection& connection, Clock::time_point now);
   /// An agent inside the host.
-  explicit Participant(Behavior& behavior);
+  Participant(Behavior& behavior, Clock::time_point now);
 
   /// For the log: "agent 3 (127.0.0.1:4711)".
   const std::string& label() const { return label_; }
@@ -75,7 +76,7 @@ class Participant {
   };
   /// Assigns number and aspect. A behavior adds its first actions. The agent has a robot as soon as it has more than
   /// what is given.
-  void join(int number, AgentAspect& aspect, Given given);
+  void join(int number, AgentAspect& aspect, Given given, Clock::time_point now);
   /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
   /// True while it has sent messages but its first percepts may be under way.
@@ -87,7 +88,8 @@ class Participant {
   void resolveParser(Node& gameControl);
   /// Parses a message; its actions are executed in the next act phase. `maxPending`: bytes per cycle. Returns "", or
   /// why the connection is to be closed.
-  std::string receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle);
+  std::string receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle,
+                      Clock::time_point now);
   /// A client's first message has come.
   bool heardFrom() const { return heardFrom_; }
   /// When the last message came; before the first one, when it was created.
@@ -123,8 +125,8 @@ class Participant {
   /// After sense(), in the simulation thread.
   void reportFaults(AgentLog& log) { percepts_.reportFaults(label_, log); }
   /// Sends the percepts of the last sense(), or calls the behavior with them. `now`: the time of the phase. False if
-  /// the message was dropped because the client has not read an earlier one.
-  bool deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now);
+  /// the message was dropped because the client has not read an earlier one. `tape`: nullptr if there is none.
+  bool deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape);
   /// Number of messages with percepts that were sent.
   std::int64_t sent() const { return sent_; }
   /// What was sensed last.
@@ -207,7 +209,7 @@ class Participant {
   std::int64_t sent_ = 0;
   std::uint64_t robotAt_ = 0;  ///< AgentAspect::changedAt() at the last resolveRobot()
   LatencyMeter latency_;
-  Clock::time_point joinedAt_ = Clock::now(), lastHeard_ = joinedAt_;
+  Clock::time_point joinedAt_, lastHeard_;
   Held held_;
   static constexpr int kLines = 100;  ///< about one agent, in LineBudget::kWindow
   LineBudget lines_{kLines};

@@ -8,6 +8,7 @@ void LogServer::describe(Description<LogServer>& d) {
   d.doc("The log: its level on stderr. Its children are further sinks, with levels of their own.");
   d.property("level", &LogServer::level, &LogServer::setLevel)
       .choices(levelNames())
+      .ofProcess()
       .doc("The lowest level that is written to stderr; at the start as --log-level says.");
   d.property("errors", &LogServer::errors).doc("Number of errors logged so far, at any level.");
 }

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "api/inputs.h"
 #include "api/monitor.h"
 #include "drawings_message.h"
 #include "messages.h"
@@ -88,9 +89,13 @@ void RequestQueue::send(SimulationReply::Kind kind, std::uint64_t viewer, std::s
 // ---- requests ----
 
 std::string RequestQueue::executeCommand(const SimulationRequest& request) {
+  constexpr std::string_view kWho = "the web's referee";
+  if (auto* tape = kernel_.root().find<IInputTape>();
+      tape && !tape->put({.kind = Input::Kind::command, .place = kWho, .text = request.text}))
+    return reply("answer", request.id, failure("a recording is played: nothing can be changed in it"));
   auto* monitor = kernel_.root().find<IMonitorServer>();
-  const std::string why = monitor ? monitor->command("the web's referee", request.text)
-                                  : "this simulation has no monitor server, which takes commands";
+  const std::string why =
+      monitor ? monitor->command(kWho, request.text) : "this simulation has no monitor server, which takes commands";
   return reply("answer", request.id, why.empty() ? "{\"ok\":true}" : failure(why));
 }
 

@@ -24,20 +24,21 @@ void NetServer::describe(Description<NetServer>& d) {
   d.doc("Network server: ports below it bring input to the run loop.");
   d.implements<IInputSource>();
   d.link(&NetServer::ports_, Below<TcpPort>());
+  d.link(&NetServer::tape_, At<IInputTape>());
   d.property("open", &NetServer::open_).doc("False: no port is opened.");
   d.on<&NetServer::endCycle>(phase::kPublish);
   d.method("listen", &NetServer::listen).doc("Opens all ports below; otherwise the first poll does.");
 }
 
 void NetServer::listen() {
-  if (!open_) return;
+  if (!isOpen()) return;
   for (const Found<TcpPort>& port : ports_) port->listen();
 }
 
 void NetServer::poll() { pollPorts(); }
 
 bool NetServer::pollPorts() {
-  if (!open_) return false;
+  if (!isOpen()) return false;
   const std::vector<Found<TcpPort>>& ports = ports_.all();
   if (!std::all_of(ports.begin(), ports.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
     try {

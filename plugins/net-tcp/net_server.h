@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "api/inputs.h"
 #include "api/phases.h"
 #include "net-tcp/handler_memory.h"
 #include "spark/describe.h"
@@ -37,6 +38,8 @@ class NetServer : public Node, public IInputSource {
 
  private:
   bool pollPorts();
+  /// False as well while recorded inputs are played, which come instead.
+  bool isOpen() const { return open_ && !(tape_ && tape_->playing()); }
   /// At the end of a cycle, and when nothing arrives: input is acknowledged, so that no client waits with its next
   /// bytes. In a cycle most input is acknowledged by output, at no cost.
   void acknowledge();
@@ -47,6 +50,7 @@ class NetServer : public Node, public IInputSource {
   boost::asio::steady_timer timer_{*io_};
   net::HandlerMemory timerMemory_;
   Links<TcpPort> ports_;
+  Link<IInputTape> tape_;
   bool open_ = true;
   std::chrono::steady_clock::time_point heardAt_{};  ///< when a port last delivered something
 };

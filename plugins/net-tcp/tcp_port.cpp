@@ -31,6 +31,7 @@ void TcpPort::describe(Description<TcpPort>& d) {
       .doc("Port number; 0 picks a free one, which can be read once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
   d.link(&TcpPort::framing_, Child<IFraming>());
+  d.link(&TcpPort::tape_, At<IInputTape>());
   d.link(&TcpPort::named_, At<IConnectionConsumer>(&TcpPort::consumerPath_));
   d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer)
       .doc("Path of the node that gets connections and messages.");
@@ -212,6 +213,7 @@ void TcpPort::addConnection(tcp::socket socket) {
     ++connectionsSeen_;
     logLimited(Level::debug, fmt::format("{} connected.", connection->peer()));
     connections_.push_back(connection);
+    put(Input::Kind::connect, *connection, connection->peer());
     consumer_->connected(*connection);
   }
 }
@@ -280,15 +282,21 @@ bool TcpPort::deliverMessages(TcpConnection& connection) {
     at += frame.consumed;
     connection.markSpoken();
     if (frame.message.empty()) continue;
-    if (consumer_)
-      consumer_->received(connection, frame.message);
-    else
+    if (consumer_) {
+      if (put(Input::Kind::message, connection, frame.message)) consumer_->received(connection, frame.message);
+    } else {
       connection.close(fmt::format("nothing at '{}' takes messages", consumerPath_));
+    }
   }
   if (at > 0) connection.markPartial(false);
   connection.consume(at);
   connection.markPartial(!connection.input().empty());
   return at > 0;
+}
+
+/// False if the input is to be ignored, because recorded ones are played.
+bool TcpPort::put(Input::Kind kind, const TcpConnection& connection, std::string_view text) {
+  return !tape_ || tape_->put({.kind = kind, .place = path(), .key = connection.id(), .text = text});
 }
 
 /// Removes closed connections and notifies the consumer; true if there were any.
@@ -297,8 +305,11 @@ bool TcpPort::removeClosed() {
     if (c->closing()) closed_.push_back(c);
   if (closed_.empty()) return false;
   std::erase_if(connections_, [](const Connection& c) { return c->closing(); });
-  for (auto& c : closed_)
-    if (consumer_) consumer_->disconnected(*c);
+  for (auto& c : closed_) {
+    if (!consumer_) continue;
+    put(Input::Kind::leave, *c);
+    consumer_->disconnected(*c);
+  }
   closed_.clear();
   return true;
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "api/inputs.h"
 #include "api/net.h"
 #include "net-tcp/rate_limited_log.h"
 #include "net-tcp/tcp_connection.h"
@@ -65,6 +66,7 @@ class TcpPort : public Node {
   bool full();
   net::TcpConnection* connectionToEvict() const;
   void closeAll();
+  bool put(Input::Kind kind, const net::TcpConnection& connection, std::string_view text = {});
   std::int64_t messagesDropped() const { return messagesDropped_; }
   std::int64_t connectionsSeen() const { return connectionsSeen_; }
   int connectionCount() const { return static_cast<int>(connections_.size()); }
@@ -89,6 +91,7 @@ class TcpPort : public Node {
   std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
 
   Link<IFraming> framing_;
+  Link<IInputTape> tape_;
   Link<IConnectionConsumer> named_;    ///< at the path of the property
   Ref<IConnectionConsumer> consumer_;  ///< consumer of all current connections
 };

@@ -43,6 +43,7 @@ void Simulation::describe(Description<Simulation>& d) {
   d.doc("The run loop: defines the phases and runs them.");
   d.implements<ISimulation>();
   d.link(&Simulation::sources_, At<Node>("/sys/server").child<IInputSource>());
+  d.link(&Simulation::tape_, At<IInputTape>()).doc("Records inputs, or plays recorded ones.");
   d.link(&Simulation::gates_, At<Node>("/").below<IInputGate>());
   d.property("step", &Simulation::step_).unit("s").range(1e-6, 1).doc("Simulated time of one cycle.");
   d.property("rate", &Simulation::rate_)
@@ -160,6 +161,7 @@ bool Simulation::finished() const {
 void Simulation::poll() {
   NowRunning now(kInput);
   now.beat();
+  if (tape_ && tape_->playing()) tape_->play();
   // Input changes the tree (agents connect and disconnect): the list is fetched again for every source.
   for (std::size_t i = 0;; ++i) {
     const std::vector<Found<IInputSource>>& sources = sources_.all();
@@ -179,6 +181,7 @@ bool Simulation::gatesOpen() {
 }
 
 void Simulation::waitForInput(double seconds) {
+  if (tape_ && tape_->playing()) return poll();
   // The first source that can wait; sources that cannot are polled after it.
   const double slice = std::min(seconds, kSlice);
   const auto canWait = [](const Found<IInputSource>& s) { return s->canWait(); };
@@ -198,7 +201,7 @@ void Simulation::waitForInput(double seconds) {
 
 void Simulation::waitForClock() {
   // Wait until the cycle is due.
-  while (paced() && !stopping()) {
+  while (paced() && !stopping() && !(tape_ && tape_->playing())) {
     const double remaining = secondsUntil(due_);
     if (remaining <= 0) break;
     waitForInput(remaining);
@@ -249,6 +252,7 @@ void Simulation::emit(Part part, Channel& channel, Clock::time_point& mark) {
 
 void Simulation::executeCycle() {
   ++cycle_;
+  if (tape_) tape_->put({.kind = Input::Kind::cycle, .number = cycle_});
   auto mark = Clock::now();
   pace_.begin(startDue_, mark, paced());
   emit(Part::act, *act_, mark);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "api/inputs.h"
 #include "api/phases.h"
 #include "pace.h"
 #include "spark/describe.h"
@@ -76,6 +77,7 @@ class Simulation : public Node, public ISimulation {
 
   Links<IInputSource> sources_;
   Links<IInputGate> gates_;
+  Link<IInputTape> tape_;
 
   Channel *act_ = nullptr, *prepare_ = nullptr, *physics_ = nullptr, *place_ = nullptr, *rule_ = nullptr,
           *sense_ = nullptr, *publish_ = nullptr;

@@ -172,4 +172,5 @@ POINTS = {
     "2": ("one match in all ways, dense", lambda: matches("dense")),
     "3": ("the same, dense with exactReplay", lambda: matches("dense with exactReplay")),
     "4": ("the same, articulated", lambda: matches("articulated")),
+    "5": ("recordings: simulated again to the last bit, read by others, cut off, damaged", lambda: tests("recorder", "system-recording", "recording-mcap")),
 }

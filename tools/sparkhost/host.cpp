@@ -68,6 +68,7 @@ void Host::build() {
   scripts(kernel_).addFolder(share_ / "lua");
   defineHostTable();
   if (options_.check) scripts(kernel_).warnOfUnsaved();
+  if (!options_.record.empty()) kernel_.sources().keepTexts();
   for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
   scripts(kernel_).runConfig(options_.config);
   for (const Options::Switch& s : options_.switches) {
@@ -77,6 +78,20 @@ void Host::build() {
                               s.flag.substr(0, s.flag.find(' '))));
     setProperty(*node, s.property, s.value);
   }
+}
+
+void Host::record(const std::string& file) {
+  kernel_.plugins().use("recorder");
+  Leaf& tape = kernel_.create<Leaf>("Recorder", "/sys/host/tape");
+  List arguments(options_.arguments.begin(), options_.arguments.end());
+  callMethod(tape, "record", std::vector<Value>{file, std::move(arguments)});
+}
+
+Leaf& Host::play(const std::string& file) {
+  kernel_.plugins().use("recorder");
+  Leaf& tape = kernel_.create<Leaf>("InputPlayer", "/sys/host/tape");
+  callMethod(tape, "open", std::vector<Value>{file});
+  return tape;
 }
 
 std::string Host::open() {

@@ -21,6 +21,10 @@ class Host {
   spark::Kernel& kernel() { return kernel_; }
   /// Runs the config, which builds the simulation, then sets the properties of command line switches.
   void build();
+  /// Records to the file, from now on.
+  void record(const std::string& file);
+  /// Plays a recording from now on, instead of opening ports; the node that plays it.
+  spark::Leaf& play(const std::string& file);
   /// Opens the ports and returns the first line of stdout.
   std::string open();
   /// A table of the delay and the duration of cycles, as text.

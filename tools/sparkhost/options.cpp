@@ -66,6 +66,9 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->needs(hashes);
+  app.add_option("--record", out.record, "Record the run to an MCAP file, which sparkreplay simulates again")
+      ->type_name("FILE")
+      ->excludes("--check");
   app.add_flag("--histogram", out.histogram, "Print a table of the delay and duration of cycles to stderr at the end");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print the description of a class, and end")
@@ -101,6 +104,13 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   if (webPort)
     put("--web-port", "/sys/server/web", "port", *webPort,
         "page for browsers: add web() of house.lua, and no --set web=false");
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--record")
+      ++i;
+    else if (!word.starts_with("--record="))
+      out.arguments.emplace_back(word);
+  }
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
   return std::nullopt;

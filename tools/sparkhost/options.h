@@ -32,8 +32,10 @@ struct Options {
   std::string logLevel = "info";
   std::string describe;  ///< --describe: name of a class; "": not given
   bool check = false, listPlugins = false, histogram = false;
-  std::string hashes;          ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
-  std::int64_t hashEvery = 1;  ///< --hash-every
+  std::string hashes;                  ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
+  std::int64_t hashEvery = 1;          ///< --hash-every
+  std::string record;                  ///< --record: file of the recording; "": none
+  std::vector<std::string> arguments;  ///< the command line without --record, for the recording
   bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
 

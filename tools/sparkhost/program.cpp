@@ -100,6 +100,7 @@ int sparkhost::runProgram(int argc, char** argv) {
     host->build();
     if (options.check) checkLog(host->kernel());
     if (!options.hashes.empty()) HashLog::install(host->kernel(), options.hashes, options.hashEvery);
+    if (!options.record.empty()) host->record(options.record);
     if (!options.check) firstLine = host->open();
   });
   bool written = true;

@@ -140,7 +140,14 @@ std::uint64_t Kernel::streamSeed(const Leaf& owner, std::string_view purpose) {
 Sources& Kernel::sources() { return parts_->sources; }
 
 void Sources::add(std::string_view kind, std::string_view name, std::string_view text) {
-  all_.insert({std::string(kind), std::string(name), hashBytes(text)});
+  const std::uint64_t hash = hashBytes(text);
+  all_.insert({std::string(kind), std::string(name), hash});
+  if (keepsTexts_) texts_.try_emplace(hash, text);
+}
+
+const std::string* Sources::text(std::uint64_t hash) const {
+  const auto found = texts_.find(hash);
+  return found == texts_.end() ? nullptr : &found->second;
 }
 
 void Kernel::saveState(StateWriter& out) const {

@@ -1,0 +1,54 @@
+#pragma once
+/// \file
+/// The inputs of a cycle as bytes, and back.
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "api/inputs.h"
+
+namespace spark::recorder {
+
+/// Names of channels in a recording, with their encodings.
+inline constexpr std::string_view kInputs = "/spark/inputs", kInputsEncoding = "spark-inputs-1";
+inline constexpr std::string_view kStates = "/spark/states", kStatesEncoding = "spark-state-1";
+inline constexpr std::string_view kHashes = "/spark/hashes";
+
+/// An input that owns its texts.
+struct OwnInput {
+  Input::Kind kind = Input::Kind::cycle;
+  std::string place;
+  std::uint64_t key = 0;
+  std::int64_t number = 0;
+  std::string text;
+  bool operator==(const OwnInput&) const = default;
+};
+
+/// Appends inputs to bytes: kind, place, key, number, text, each number as groups of seven bits. Times are differences
+/// to the last one.
+class InputWriter {
+ public:
+  void add(const Input& input);
+  /// The bytes so far, which are forgotten. Each piece can be read only after the ones before.
+  std::string take() { return std::exchange(bytes_, {}); }
+
+ private:
+  void number(std::uint64_t v);
+  void text(std::string_view v);
+  std::string bytes_;
+  std::int64_t lastTime_ = 0;
+};
+
+/// Reads what an InputWriter wrote, piece by piece.
+class InputReader {
+ public:
+  /// Appends the inputs of a piece. Throws Error if it is damaged.
+  void read(std::string_view bytes, std::vector<OwnInput>& out);
+
+ private:
+  std::int64_t lastTime_ = 0;
+};
+
+}  // namespace spark::recorder

@@ -1,0 +1,68 @@
+#pragma once
+/// \file
+/// Plays a recording: a simulation built in the same way follows it.
+
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "api/inputs.h"
+#include "api/net.h"
+#include "api/phases.h"
+#include "input_codec.h"
+#include "mcap.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// The tape of a recorded run, at /sys/host/tape. It passes the recorded inputs to those who got them, tells the
+/// recorded times and decisions, and compares hashes and states in each cycle.
+class InputPlayer : public Node, public IInputTape {
+  SPARK_CLASS(InputPlayer, Node)
+ public:
+  static void describe(Description<InputPlayer>& d);
+  InputPlayer();
+  ~InputPlayer() override;
+
+  bool playing() const override { return true; }
+  bool put(const Input& input) override;
+  Clock::time_point time(Clock::time_point live) override;
+  bool decide(std::string_view what, std::uint64_t key, bool live, bool usual) override;
+  void play() override;
+
+  /// Opens a recording and compares the present state with its first one. Throws Error if it cannot be read.
+  void open(std::string file);
+
+ protected:
+  void onUnlink() override;
+
+ private:
+  class Connection;
+  void fill();
+  bool readChunk();
+  const recorder::OwnInput* next();
+  void pass(const recorder::OwnInput& input);
+  IConnectionConsumer* consumerOf(const Leaf& port) const;
+  void endCycle(const Event& event);
+  void compareState(std::string_view frame, std::int64_t cycle);
+  void differs(std::int64_t cycle, std::string what);
+  void lost(std::string_view asked);
+  std::vector<std::string> lacks() const;
+
+  std::unique_ptr<mcap::Reader> reader_;
+  std::size_t chunk_ = 0;  ///< next one to read
+  recorder::InputReader decoder_;
+  std::deque<recorder::OwnInput> inputs_;                ///< read and not yet passed
+  std::map<std::int64_t, std::string> hashes_, frames_;  ///< by cycle: read and not yet compared
+  std::map<std::pair<std::string, std::uint64_t>, std::unique_ptr<Connection>> connections_;
+  bool passing_ = false, lost_ = false;
+  int idlePlays_ = 0;  ///< calls of play() since something was taken from the tape
+  std::int64_t cycle_ = 0, compared_ = 0, states_ = 0, differsAt_ = -1;
+  std::string file_, difference_;
+  Link<ISimulation> simulation_;
+};
+
+}  // namespace spark

@@ -1,0 +1,58 @@
+#pragma once
+/// \file
+/// Records a run.
+
+#include <memory>
+#include <set>
+#include <string>
+
+#include "api/inputs.h"
+#include "api/phases.h"
+#include "input_codec.h"
+#include "recording.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Writes the tape of a run to a file: inputs, a hash in each cycle, the whole state from time to time, and the texts
+/// that the run was made of. At /sys/host/tape. It has no state, and nothing in the simulation depends on it.
+class Recorder : public Node, public IInputTape {
+  SPARK_CLASS(Recorder, Node)
+ public:
+  static void describe(Description<Recorder>& d);
+  ~Recorder() override;
+
+  bool playing() const override { return false; }
+  bool put(const Input& input) override;
+  Clock::time_point time(Clock::time_point live) override;
+  bool decide(std::string_view what, std::uint64_t key, bool live, bool usual) override;
+
+  /// Begins a recording; the present state is its first. `arguments`: of the program. Throws Error if the file cannot
+  /// be written, or if it records already.
+  void record(std::string file, std::vector<std::string> arguments);
+  /// Writes the rest and the end.
+  void finish();
+
+ protected:
+  void onUnlink() override;
+
+ private:
+  void endCycle(const Event& event);
+  void keyFrame(mcap::Time time, std::int64_t cycle);
+  void attachNewTexts(mcap::Time time);
+
+  std::unique_ptr<recorder::Recording> recording_;
+  recorder::InputWriter inputs_;
+  std::uint16_t inputChannel_ = 0, stateChannel_ = 0, hashChannel_ = 0;
+  std::size_t texts_ = 0;  ///< number of sources that were attached
+  std::set<std::uint64_t> attached_;
+  std::string file_;
+  double every_ = 10;  ///< s between key frames
+  double nextKeyFrame_ = 0;
+  mcap::Time lastTime_ = 0;
+  bool failed_ = false;
+  Link<ISimulation> simulation_;
+};
+
+}  // namespace spark

@@ -1,0 +1,143 @@
+#include "recording.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+
+#include "spark/error.h"
+
+namespace spark::recorder {
+
+namespace {
+constexpr std::size_t kMaxQueued = 256u << 20;  // bytes that wait for the disk
+constexpr std::size_t kChunkBytes = 4u << 20;
+constexpr mcap::Time kChunkTime = 1'000'000'000;             // ns
+constexpr auto kChunkWall = std::chrono::milliseconds(500);  // of real time
+}  // namespace
+
+Recording::Recording(const std::string& file, std::string library) : file_(file), library_(std::move(library)) {
+  fd_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (fd_ < 0) throw Error(fmt::format("cannot write the recording {}: {}", file, std::strerror(errno)));
+  thread_ = std::thread([this] { work(); });
+}
+
+Recording::~Recording() {
+  {
+    const std::lock_guard lock(mutex_);
+    ending_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+  ::close(fd_);
+}
+
+std::string Recording::failure() const {
+  const std::lock_guard lock(mutex_);
+  return failure_;
+}
+
+std::uint16_t Recording::channel(mcap::Channel channel, mcap::Schema schema) {
+  Item item{Item::Kind::channel};
+  if (!schema.name.empty()) item.number = ++schemas_;
+  item.name = std::move(channel.topic), item.type = std::move(channel.encoding);
+  item.schema = std::move(schema);
+  queue(std::move(item));
+  return ++channels_;
+}
+
+void Recording::message(std::uint16_t channel, mcap::Time time, std::string data) {
+  Item item{Item::Kind::message};
+  item.number = channel, item.time = time, item.data = std::move(data);
+  queue(std::move(item));
+}
+
+void Recording::attachment(mcap::Time time, std::string name, std::string mediaType, std::string data) {
+  Item item{Item::Kind::attachment};
+  item.time = time, item.name = std::move(name), item.type = std::move(mediaType), item.data = std::move(data);
+  queue(std::move(item));
+}
+
+void Recording::metadata(std::string name, std::map<std::string, std::string> values) {
+  Item item{Item::Kind::metadata};
+  item.name = std::move(name), item.values = std::move(values);
+  queue(std::move(item));
+}
+
+void Recording::queue(Item item) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!failure_.empty()) return;
+    queued_ += item.bytes();
+    if (queued_ > kMaxQueued) {
+      failure_ = fmt::format("{} MB wait for the disk", kMaxQueued >> 20);
+      return;
+    }
+    items_.push_back(std::move(item));
+  }
+  wake_.notify_one();
+}
+
+void Recording::put(std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw Error(std::strerror(errno));
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+void Recording::write(mcap::Writer& writer, const Item& item) {
+  switch (item.kind) {
+    case Item::Kind::channel: {
+      if (!item.schema.name.empty()) writer.schema(item.schema);
+      writer.channel({item.number, item.name, item.type});
+      return;
+    }
+    case Item::Kind::message:
+      if (writer.chunkBytes() > 0 && item.time - writer.chunkBegin() >= kChunkTime) writer.endChunk();
+      writer.message(item.number, item.time, item.data);
+      if (writer.chunkBytes() >= kChunkBytes) writer.endChunk();
+      return;
+    case Item::Kind::attachment:
+      return writer.attachment(item.time, item.name, item.type, item.data);
+    case Item::Kind::metadata:
+      return writer.metadata(item.name, item.values);
+  }
+}
+
+void Recording::work() {
+  using Clock = std::chrono::steady_clock;
+  try {
+    mcap::Writer writer([this](std::string_view bytes) { put(bytes); }, library_);
+    std::vector<Item> items;
+    for (auto began = Clock::now();;) {
+      bool ending = false;
+      {
+        std::unique_lock lock(mutex_);
+        wake_.wait_for(lock, kChunkWall / 2, [this] { return ending_ || !items_.empty(); });
+        items.swap(items_);
+        queued_ = 0;
+        ending = ending_;
+      }
+      if (writer.chunkBytes() == 0) began = Clock::now();
+      for (const Item& item : items) write(writer, item);
+      items.clear();
+      if (Clock::now() - began >= kChunkWall) writer.endChunk();
+      if (!ending) continue;
+      const std::lock_guard lock(mutex_);
+      if (!items_.empty()) continue;
+      writer.finish();
+      return;
+    }
+  } catch (const std::exception& e) {
+    const std::lock_guard lock(mutex_);
+    failure_ = e.what();
+    items_.clear();
+  }
+}
+
+}  // namespace spark::recorder

@@ -1,0 +1,63 @@
+#pragma once
+/// \file
+/// A recording that is being written, by a thread of its own.
+
+#include <condition_variable>
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "mcap.h"
+
+namespace spark::recorder {
+
+/// Writes an MCAP file. The functions only queue, so that no simulation waits for a disk; if the disk cannot follow, or
+/// is full, the recording ends, and failure() says so. One thread calls them.
+class Recording {
+ public:
+  /// Opens the file. Throws Error if it cannot be written.
+  Recording(const std::string& file, std::string library);
+  /// Writes what is queued, and the end.
+  ~Recording();
+  Recording(const Recording&) = delete;
+  Recording& operator=(const Recording&) = delete;
+
+  /// Adds a channel; its number. Before the first message.
+  std::uint16_t channel(mcap::Channel channel, mcap::Schema schema = {});
+  void message(std::uint16_t channel, mcap::Time time, std::string data);
+  void attachment(mcap::Time time, std::string name, std::string mediaType, std::string data);
+  void metadata(std::string name, std::map<std::string, std::string> values);
+  /// Why the recording has ended; "" while it goes on.
+  std::string failure() const;
+
+ private:
+  struct Item {
+    enum class Kind { channel, message, attachment, metadata } kind;
+    std::uint16_t number = 0;
+    mcap::Time time = 0;
+    std::string name, type, data;
+    mcap::Schema schema;
+    std::map<std::string, std::string> values;
+    std::size_t bytes() const { return sizeof *this + name.size() + type.size() + data.size() + schema.data.size(); }
+  };
+  void queue(Item item);
+  void work();
+  void write(mcap::Writer& writer, const Item& item);
+  void put(std::string_view bytes) const;
+
+  std::string file_, library_;
+  int fd_ = -1;
+  std::uint16_t channels_ = 0, schemas_ = 0;
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::vector<Item> items_;
+  std::size_t queued_ = 0;  ///< bytes
+  bool ending_ = false;
+  std::string failure_;
+  std::thread thread_;
+};
+
+}  // namespace spark::recorder

@@ -1,0 +1,80 @@
+// Recordings of sparkhost --record, read by other people's programs: the packages @mcap/core and @mcap/support.
+import assert from "node:assert/strict";
+import { execFile } from "node:child_process";
+import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { test } from "node:test";
+import { promisify } from "node:util";
+import { build, viewerPackage } from "./support/places.mjs";
+
+const { McapStreamReader, McapIndexedReader } = viewerPackage("@mcap/core");
+const { loadDecompressHandlers } = viewerPackage("@mcap/support");
+
+const folder = mkdtempSync(join(tmpdir(), "spark-recording-"));
+process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
+const seconds = 12;
+let bytes;
+
+/** The bytes of a recording of boxes that fall. */
+async function recording() {
+  const file = join(folder, "boxes.mcap");
+  await promisify(execFile)(join(build, "bin", "sparkhost"), ["--config", "boxes.lua", "--seed", "7", "--rate", "max", "--duration", String(seconds), "--web-port", "0", "--record", file, "--log-level", "error"]);
+  return new Uint8Array(readFileSync(file));
+}
+
+/** All records, read from the front with every check; those of chunks as well. */
+function stream(data, decompressHandlers) {
+  const reader = new McapStreamReader({ validateCrcs: true, decompressHandlers });
+  reader.append(data);
+  const records = [];
+  for (let record; (record = reader.nextRecord()); ) records.push(record);
+  return { records, done: reader.done() };
+}
+
+const readable = (data) => ({ size: async () => BigInt(data.length), read: async (offset, length) => data.subarray(Number(offset), Number(offset) + Number(length)) });
+
+async function messages(reader, options) {
+  const out = [];
+  for await (const message of reader.readMessages(options)) out.push(message);
+  return out;
+}
+
+test("a recording is strictly valid, and says what it holds", async () => {
+  bytes ??= await recording();
+  const decompressHandlers = await loadDecompressHandlers();
+  const { records, done } = stream(bytes, decompressHandlers);
+  assert.ok(done, "the reader wants more");
+  const of = (type) => records.filter((r) => r.type === type);
+  assert.equal(of("Message").length, 2 * 50 * seconds + 2, "inputs and hashes of each cycle, states at 0 and 10 s");
+  assert.ok(of("Channel").some((c) => c.topic === "/spark/hashes" && c.messageEncoding === "json"));
+  assert.ok(of("Attachment").some((a) => a.name === "script:boxes.lua" && new TextDecoder().decode(a.data).includes("physics(")));
+  assert.equal(of("Metadata")[0].metadata.get("seed"), "7");
+  assert.equal(of("Footer").length, 1);
+});
+
+test("a recording is read by its index: all of it, one channel, a part of the time, backwards", async () => {
+  bytes ??= await recording();
+  const reader = await McapIndexedReader.Initialize({ readable: readable(bytes), decompressHandlers: await loadDecompressHandlers() });
+  const all = await messages(reader);
+  assert.equal(BigInt(all.length), reader.statistics.messageCount);
+  assert.ok(reader.chunkIndexes.every((c) => c.messageEndTime - c.messageStartTime <= 1_000_000_000n), "a chunk is longer than a second");
+  const hashes = await messages(reader, { topics: ["/spark/hashes"] });
+  assert.deepEqual(hashes.map((m) => JSON.parse(new TextDecoder().decode(m.data)).cycle), [...Array(50 * seconds).keys()].map((i) => i + 1));
+  const part = await messages(reader, { topics: ["/spark/hashes"], startTime: 3_000_000_000n, endTime: 4_000_000_000n });
+  assert.equal(part.length, 51);
+  const back = await messages(reader, { topics: ["/spark/hashes"], reverse: true });
+  assert.deepEqual(back.map((m) => m.sequence), hashes.map((m) => m.sequence).reverse());
+  const attachments = [];
+  for await (const attachment of reader.readAttachments()) attachments.push(attachment.name);
+  assert.ok(attachments.includes("script:house.lua"));
+  for await (const metadata of reader.readMetadata()) assert.equal(metadata.name, "spark");
+});
+
+test("a recording that was cut off is read up to its last whole chunk", async () => {
+  bytes ??= await recording();
+  const decompressHandlers = await loadDecompressHandlers();
+  const { records, done } = stream(bytes.subarray(0, Math.floor(bytes.length / 2)), decompressHandlers);
+  assert.ok(!done);
+  assert.ok(records.filter((r) => r.type === "Message").length > 100);
+});
