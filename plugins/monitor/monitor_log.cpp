@@ -14,6 +14,7 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
   using L = MonitorLog;
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
   d.link(&MonitorLog::drawings_, At<IDrawings>());
+  d.link(&MonitorLog::tape_, At<IInputTape>()).doc("While it plays a recorded run, the log of that run stays.");
   d.property("file", &L::file_).doc("The file; its content is replaced. Used when the first record is written.");
   d.property("interval", &L::interval_)
       .unit("s")
@@ -52,6 +53,7 @@ bool MonitorLog::open(const NewestFrame& newest) {
 }
 
 void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) {
+  if (tape_ && tape_->playing()) return;
   if (event.cycle < nextCycle_ || !encoder || !open(newest)) return;
   const auto every =
       std::max<std::int64_t>(1, event.step > 0 ? std::llround(std::min(interval_ / event.step, 1e9)) : 1);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "api/drawing.h"
+#include "api/inputs.h"
 #include "monitor_view.h"
 #include "spark/describe.h"
 #include "spark/node.h"
@@ -40,6 +41,7 @@ class MonitorLog : public Node, public IFrameTaker {
   std::unique_ptr<std::FILE, Close> out_;
   std::string record_, drawn_;  ///< message and draw commands of the current record
   Link<IDrawings> drawings_;
+  Link<IInputTape> tape_;
   std::uint64_t drawnVersion_ = 0;  ///< IDrawings::version() of the last record
   std::int64_t nextCycle_ = 0;      ///< no record before this cycle
   std::int64_t records_ = 0;

@@ -56,7 +56,8 @@ void InputWriter::add(const Input& input) {
   text(input.text);
 }
 
-void InputReader::read(std::string_view bytes, std::vector<OwnInput>& out) {
+void readInputs(std::string_view bytes, std::vector<OwnInput>& out) {
+  std::int64_t lastTime = 0;
   while (!bytes.empty()) {
     OwnInput in;
     const auto kind = static_cast<unsigned char>(bytes.front());
@@ -64,7 +65,7 @@ void InputReader::read(std::string_view bytes, std::vector<OwnInput>& out) {
     bytes.remove_prefix(1);
     in.kind = static_cast<Input::Kind>(kind);
     in.number = unfolded(takeNumber(bytes));
-    if (in.kind == Input::Kind::time) in.number = lastTime_ += in.number;
+    if (in.kind == Input::Kind::time) in.number = lastTime += in.number;
     if (isLong(in.kind)) {
       in.place = takeText(bytes);
       in.key = takeNumber(bytes);

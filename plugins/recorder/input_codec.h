@@ -26,13 +26,16 @@ struct OwnInput {
   bool operator==(const OwnInput&) const = default;
 };
 
-/// Appends inputs to bytes: kind, place, key, number, text, each number as groups of seven bits. Times are differences
-/// to the last one.
+/// Appends inputs to bytes: kind, number, place, key, text, each number as groups of seven bits. Times are differences
+/// to the last one of the piece.
 class InputWriter {
  public:
   void add(const Input& input);
-  /// The bytes so far, which are forgotten. Each piece can be read only after the ones before.
-  std::string take() { return std::exchange(bytes_, {}); }
+  /// The bytes so far, a piece that can be read without others. They are forgotten.
+  std::string take() {
+    lastTime_ = 0;
+    return std::exchange(bytes_, {});
+  }
 
  private:
   void number(std::uint64_t v);
@@ -41,14 +44,7 @@ class InputWriter {
   std::int64_t lastTime_ = 0;
 };
 
-/// Reads what an InputWriter wrote, piece by piece.
-class InputReader {
- public:
-  /// Appends the inputs of a piece. Throws Error if it is damaged.
-  void read(std::string_view bytes, std::vector<OwnInput>& out);
-
- private:
-  std::int64_t lastTime_ = 0;
-};
+/// Appends the inputs of a piece. Throws Error if it is damaged.
+void readInputs(std::string_view piece, std::vector<OwnInput>& out);
 
 }  // namespace spark::recorder

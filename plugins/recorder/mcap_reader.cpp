@@ -15,7 +15,7 @@
 namespace spark::mcap {
 
 namespace {
-constexpr std::uint64_t kMaxChunk = 1u << 30;  // bytes; larger ones are damaged
+constexpr std::uint64_t kMaxChunk = 256u << 20;  // bytes; larger ones are damaged
 constexpr std::size_t kFooterSize = kRecordHead + 20;
 }  // namespace
 

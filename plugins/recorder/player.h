@@ -53,8 +53,7 @@ class InputPlayer : public Node, public IInputTape {
   std::vector<std::string> lacks() const;
 
   std::unique_ptr<mcap::Reader> reader_;
-  std::size_t chunk_ = 0;  ///< next one to read
-  recorder::InputReader decoder_;
+  std::size_t chunk_ = 0;                                ///< next one to read
   std::deque<recorder::OwnInput> inputs_;                ///< read and not yet passed
   std::map<std::int64_t, std::string> hashes_, frames_;  ///< by cycle: read and not yet compared
   std::map<std::pair<std::string, std::uint64_t>, std::unique_ptr<Connection>> connections_;

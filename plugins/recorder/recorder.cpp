@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "spark/error.h"
+#include "spark/json_writer.h"
 #include "spark/sources.h"
 #include "spark/state.h"
 
@@ -16,6 +17,10 @@ namespace {
 mcap::Time nanoseconds(double seconds) { return static_cast<mcap::Time>(std::llround(seconds * 1e9)); }
 constexpr const char* kHashSchema =
     R"({"type":"object","properties":{"cycle":{"type":"integer"},"state":{"type":"string"}}})";
+constexpr const char* kLogSchema =
+    R"({"title":"foxglove.Log","type":"object","required":["timestamp","level","message","name","file","line"],"properties":{)"
+    R"("timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"level":{"type":"integer"},)"
+    R"("message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},"line":{"type":"integer"}}})";
 }  // namespace
 
 void Recorder::describe(Description<Recorder>& d) {
@@ -27,6 +32,10 @@ void Recorder::describe(Description<Recorder>& d) {
       .unit("s")
       .min(0.02)
       .doc("Simulated time between two states that are written as a whole.");
+  d.property("picture", &Recorder::picture_)
+      .unit("s")
+      .min(0)
+      .doc("Simulated time between two pictures of the scene, for other programs; 0: none.");
   d.method("record", &Recorder::record).parameters({"file", "arguments"}).doc("Begins a recording.");
   d.method("finish", &Recorder::finish).doc("Ends the recording.");
   d.on<&Recorder::endCycle>(phase::kPublish);
@@ -44,6 +53,14 @@ void Recorder::record(std::string file, std::vector<std::string> arguments) {
   stateChannel_ = recording_->channel({0, std::string(recorder::kStates), std::string(recorder::kStatesEncoding)});
   hashChannel_ =
       recording_->channel({0, std::string(recorder::kHashes), "json"}, {"spark.Hash", "jsonschema", kHashSchema});
+  logChannel_ = recording_->channel({0, "/log", "json"}, {"foxglove.Log", "jsonschema", kLogSchema});
+  if (picture_ > 0) {
+    frames_ = std::make_unique<recorder::Frames>(kernel());
+    shapeChannel_ = recording_->channel({0, "/scene", "json"},
+                                        {"foxglove.SceneUpdate", "jsonschema", recorder::Frames::shapesSchema()});
+    placeChannel_ = recording_->channel({0, "/tf", "json"},
+                                        {"foxglove.FrameTransforms", "jsonschema", recorder::Frames::placesSchema()});
+  }
   recording_->metadata("spark", {{"arguments", nlohmann::json(arguments).dump()},
                                  {"workingFolder", std::filesystem::current_path().string()},
                                  {"seed", std::to_string(kernel().seed())},
@@ -53,12 +70,37 @@ void Recorder::record(std::string file, std::vector<std::string> arguments) {
   attachNewTexts(lastTime_);
   keyFrame(lastTime_, simulation_ ? simulation_->cycle() : 0);
   nextKeyFrame_ = now + every_;
+  nextPicture_ = now;
+  drawFrame(lastTime_);
+  logSink_ = kernel().log().addSink(Level::info, [this](Level level, std::string_view line) { note(level, line); });
+}
+
+/// Takes a line of the log, from any thread. Who reads the recording must not become the referee of a match under way.
+void Recorder::note(Level level, std::string_view line) {
+  constexpr std::string_view kToken = "#token=";
+  const std::size_t secret = std::min(line.find(kToken), line.size());
+  constexpr mcap::Time kSecond = 1'000'000'000;
+  const mcap::Time at = lastTime_;
+  std::string text;
+  JsonWriter json(text);
+  json.beginObject()
+      .key("timestamp")
+      .beginObject()
+      .member("sec", at / kSecond)
+      .member("nsec", at % kSecond)
+      .endObject();
+  // DEBUG, INFO, WARNING and ERROR are 1 to 4.
+  json.member("level", std::max(1, static_cast<int>(level))).member("message", line.substr(0, secret));
+  json.member("name", "sparkhost").member("file", "").member("line", 0).endObject();
+  recording_->message(logChannel_, at, std::move(text));
 }
 
 void Recorder::finish() {
   if (!recording_) return;
+  kernel().log().removeSink(logSink_);
   if (std::string rest = inputs_.take(); !rest.empty()) recording_->message(inputChannel_, lastTime_, std::move(rest));
   recording_.reset();
+  frames_.reset();
   file_.clear();
 }
 
@@ -91,6 +133,7 @@ void Recorder::endCycle(const Event& event) {
     keyFrame(lastTime_, event.cycle);
     nextKeyFrame_ += every_;
   }
+  drawFrame(lastTime_);
   if (failed_) return;
   if (const std::string why = recording_->failure(); !why.empty()) {
     failed_ = true;
@@ -106,6 +149,13 @@ void Recorder::keyFrame(mcap::Time time, std::int64_t cycle) {
   frame.write(configurationHash(kernel().root()));
   frame.write(state.bytes());
   recording_->message(stateChannel_, time, frame.bytes());
+}
+
+void Recorder::drawFrame(mcap::Time time) {
+  if (!frames_ || static_cast<double>(time) * 1e-9 < nextPicture_ - 1e-9) return;
+  nextPicture_ += picture_;
+  if (frames_->refresh()) recording_->message(shapeChannel_, time, frames_->shapes(time));
+  recording_->message(placeChannel_, time, frames_->places(time));
 }
 
 /// Files may be read later as well, such as a robot's when an agent joins.

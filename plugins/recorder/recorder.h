@@ -2,12 +2,14 @@
 /// \file
 /// Records a run.
 
+#include <atomic>
 #include <memory>
 #include <set>
 #include <string>
 
 #include "api/inputs.h"
 #include "api/phases.h"
+#include "frames.h"
 #include "input_codec.h"
 #include "recording.h"
 #include "spark/describe.h"
@@ -41,16 +43,22 @@ class Recorder : public Node, public IInputTape {
   void endCycle(const Event& event);
   void keyFrame(mcap::Time time, std::int64_t cycle);
   void attachNewTexts(mcap::Time time);
+  void drawFrame(mcap::Time time);
+  void note(Level level, std::string_view line);
 
   std::unique_ptr<recorder::Recording> recording_;
   recorder::InputWriter inputs_;
-  std::uint16_t inputChannel_ = 0, stateChannel_ = 0, hashChannel_ = 0;
+  std::uint16_t inputChannel_ = 0, stateChannel_ = 0, hashChannel_ = 0, logChannel_ = 0, shapeChannel_ = 0,
+                placeChannel_ = 0;
+  int logSink_ = 0;
   std::size_t texts_ = 0;  ///< number of sources that were attached
   std::set<std::uint64_t> attached_;
   std::string file_;
-  double every_ = 10;  ///< s between key frames
+  std::unique_ptr<recorder::Frames> frames_;
+  double every_ = 10, picture_ = 0.2;  ///< s between key frames, and between places of shapes
+  double nextPicture_ = 0;
   double nextKeyFrame_ = 0;
-  mcap::Time lastTime_ = 0;
+  std::atomic<mcap::Time> lastTime_ = 0;  ///< the log may be written by any thread
   bool failed_ = false;
   Link<ISimulation> simulation_;
 };

@@ -107,6 +107,22 @@ TEST_CASE("A host that was killed leaves a recording that can be simulated up to
   CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("the recording was cut off"));
 }
 
+TEST_CASE("A recording with a damaged chunk is simulated up to the damage, which is named") {
+  Recorded match("soccer-sphere.lua", "sphere-team", 2,
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "20"}));
+  match.end();
+  std::string bytes = textOf(match.file);
+  for (std::size_t i = 0; i < 50; ++i) bytes[bytes.size() * 4 / 5 + i] ^= 0x55;
+  std::ofstream(match.file, std::ios::binary) << bytes;
+  const auto [line, code] = verify(match.file);
+  CHECK(code == 0);
+  CHECK(line["cycles"] > 100);
+  CHECK(line["cycles"] < 1000);
+  CHECK(line["differs"].is_null());
+  REQUIRE(line["lacks"].size() == 1);
+  CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("s is damaged: "));
+}
+
 TEST_CASE("A disk that is full ends the recording, not the run") {
   const Finished f = runToEnd({program("sparkhost"), "--config", "boxes.lua", "--rate", "max", "--duration", "3",
                                "--web-port", "0", "--record", "/dev/full"});
@@ -125,12 +141,59 @@ get("/sys/server/simulation"):on("rule", function(self, event)
 end)
 )");
   const std::string file = folder.path() / "run.mcap";
-  CHECK(runToEnd({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "2", "--web-port", "0",
+  CHECK(runToEnd({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "11", "--web-port", "0",
                   "--log-level", "error", "--record", file})
             .code == 0);
   const auto [line, code] = verify(file);
   CHECK(code == 1);
   CHECK(line["differs"]["cycle"] == 30);
+  CHECK_THAT(line["differs"]["what"].get<std::string>(),
+             Contains("/usr/scene/world.gravity: {0.0, 0.0, -9.0} against {0.0, 0.0, -9.81}"));
+}
+
+TEST_CASE("A recording holds its scripts and scenes, and playing it leaves other files alone") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("mine.lua", R"(
+include "soccer-sphere.lua"
+get("/sys/server/simulation"):attachScript("count.lua", { from = 5 })
+)");
+  const std::string script = folder.write("count.lua", R"(
+local args = ...
+state.n = args.from
+on("rule", function() state.n = state.n + 1 end)
+)");
+  const std::string file = folder.path() / "run.mcap", log = folder.path() / "game.log";
+  CHECK(runToEnd({program("sparkhost"),
+                  "--config",
+                  config,
+                  "--rate",
+                  "max",
+                  "--duration",
+                  "3",
+                  "--web-port",
+                  "0",
+                  "--agent-port",
+                  "0",
+                  "--monitor-port",
+                  "0",
+                  "--log-level",
+                  "error",
+                  "--set",
+                  "team=Red Blue",
+                  "--set",
+                  "monitorLog=" + log,
+                  "--record",
+                  file})
+            .code == 0);
+  const std::string written = textOf(log);
+  CHECK(written.size() > 1000);
+  folder.write("mine.lua", "this is no Lua");
+  std::filesystem::remove(script);
+  const auto [line, code] = verify(file);
+  CHECK(code == 0);
+  CHECK(line["cycles"] == 150);
+  CHECK(line["lacks"].empty());
+  CHECK(textOf(log) == written);
 }
 
 TEST_CASE("What is no recording, and what cannot be written, is refused") {

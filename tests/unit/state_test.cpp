@@ -293,6 +293,9 @@ TEST_CASE("The configuration hash covers names, classes, shape, properties that 
         }) == hashWith([](Core& c) {
           for (const char* name : {"y", "x"}) c.kernel.sources().add("file", name, "one");
         }));
+  // Nor does the folder of a script.
+  CHECK(hashWith([](Core& c) { c.kernel.sources().add("script", "/home/a/x.lua", "one"); }) ==
+        hashWith([](Core& c) { c.kernel.sources().add("script", "/home/b/x.lua", "one"); }));
 }
 
 TEST_CASE("Streams that are seeded after loading are those that would have been seeded") {

@@ -10,6 +10,7 @@ import { build, viewerPackage } from "./support/places.mjs";
 
 const { McapStreamReader, McapIndexedReader } = viewerPackage("@mcap/core");
 const { loadDecompressHandlers } = viewerPackage("@mcap/support");
+const schemas = viewerPackage("@foxglove/schemas/jsonschema");
 
 const folder = mkdtempSync(join(tmpdir(), "spark-recording-"));
 process.on("exit", () => rmSync(folder, { recursive: true, force: true }));
@@ -19,7 +20,7 @@ let bytes;
 /** The bytes of a recording of boxes that fall. */
 async function recording() {
   const file = join(folder, "boxes.mcap");
-  await promisify(execFile)(join(build, "bin", "sparkhost"), ["--config", "boxes.lua", "--seed", "7", "--rate", "max", "--duration", String(seconds), "--web-port", "0", "--record", file, "--log-level", "error"]);
+  await promisify(execFile)(join(build, "bin", "sparkhost"), ["--config", "boxes.lua", "--seed", "7", "--rate", "max", "--duration", String(seconds), "--web-port", "0", "--record", file, "--log-level", "error", "--set", "webToken=0123456789abcdef"]);
   return new Uint8Array(readFileSync(file));
 }
 
@@ -46,7 +47,8 @@ test("a recording is strictly valid, and says what it holds", async () => {
   const { records, done } = stream(bytes, decompressHandlers);
   assert.ok(done, "the reader wants more");
   const of = (type) => records.filter((r) => r.type === type);
-  assert.equal(of("Message").length, 2 * 50 * seconds + 2, "inputs and hashes of each cycle, states at 0 and 10 s");
+  const own = of("Channel").filter((c) => c.topic.startsWith("/spark/")).map((c) => c.id);
+  assert.equal(of("Message").filter((m) => own.includes(m.channelId)).length, 2 * 50 * seconds + 2, "inputs and hashes of each cycle, states at 0 and 10 s");
   assert.ok(of("Channel").some((c) => c.topic === "/spark/hashes" && c.messageEncoding === "json"));
   assert.ok(of("Attachment").some((a) => a.name === "script:boxes.lua" && new TextDecoder().decode(a.data).includes("physics(")));
   assert.equal(of("Metadata")[0].metadata.get("seed"), "7");
@@ -69,6 +71,45 @@ test("a recording is read by its index: all of it, one channel, a part of the ti
   for await (const attachment of reader.readAttachments()) attachments.push(attachment.name);
   assert.ok(attachments.includes("script:house.lua"));
   for await (const metadata of reader.readMetadata()) assert.equal(metadata.name, "spark");
+});
+
+/** What is wrong with a value by a JSON schema, as far as those of Foxglove go; "" if nothing is. */
+function wrong(value, schema, where = "it") {
+  if (schema.oneOf) return schema.oneOf.some((one) => one.const === value) ? "" : `${where} is ${value}`;
+  if (schema.type === "object") {
+    if (typeof value !== "object" || value === null) return `${where} is no object`;
+    for (const key of schema.required ?? []) if (!(key in value)) return `${where} lacks ${key}`;
+    for (const [key, part] of Object.entries(value)) {
+      if (!schema.properties?.[key]) return `${where} has ${key}, which the schema has not`;
+      const found = wrong(part, schema.properties[key], `${where}.${key}`);
+      if (found) return found;
+    }
+    return "";
+  }
+  if (schema.type === "array") return Array.isArray(value) ? value.map((v, i) => wrong(v, schema.items, `${where}[${i}]`)).find((text) => text) ?? "" : `${where} is no array`;
+  if (schema.type === "integer") return Number.isInteger(value) && value >= (schema.minimum ?? -Infinity) && value <= (schema.maximum ?? Infinity) ? "" : `${where} is ${value}`;
+  if (schema.type === "number") return typeof value === "number" ? "" : `${where} is no number`;
+  return typeof value === schema.type ? "" : `${where} is no ${schema.type}`;
+}
+
+test("channels with a schema of Foxglove have messages of that schema, and the referee's token is in none", async () => {
+  bytes ??= await recording();
+  const reader = await McapIndexedReader.Initialize({ readable: readable(bytes), decompressHandlers: await loadDecompressHandlers() });
+  let checked = 0;
+  for (const channel of reader.channelsById.values()) {
+    const schema = reader.schemasById.get(channel.schemaId);
+    if (!schema?.name.startsWith("foxglove.")) continue;
+    const theirs = schemas[schema.name.slice("foxglove.".length)];
+    assert.ok(theirs, `there is no schema ${schema.name}`);
+    assert.equal(JSON.parse(new TextDecoder().decode(schema.data)).title, schema.name);
+    for (const message of await messages(reader, { topics: [channel.topic] })) {
+      assert.equal(wrong(JSON.parse(new TextDecoder().decode(message.data)), theirs), "");
+      checked++;
+    }
+  }
+  assert.ok(checked > 0, "there is no message with a schema of Foxglove");
+  for (const message of await messages(reader)) assert.ok(!new TextDecoder().decode(message.data).includes("0123456789abcdef"), "the token is in a message");
+  for await (const metadata of reader.readMetadata()) assert.ok(![...metadata.metadata.values()].join().includes("0123456789abcdef"), "the token is in the metadata");
 });
 
 test("a recording that was cut off is read up to its last whole chunk", async () => {

@@ -10,7 +10,7 @@ import threading
 from dataclasses import dataclass
 from pathlib import Path
 
-from acceptance.common import FAIL, PASS, ROOT, build, say, tests
+from acceptance.common import BIN, FAIL, PASS, ROOT, build, say, tests
 from acceptance.fresh import busy
 
 SECONDS = 600  # of a match
@@ -104,7 +104,7 @@ def play(league, solver, way, seconds, players=11):
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
         config = league.config
         if way.plugins == "backwards":
-            plugins = sorted(p.stem for p in (ROOT / "build" / way.build / "plugins").glob("*.so"))
+            plugins = sorted(p.stem for p in (BIN.parent / "plugins").glob("*.so"))  # one text for all builds
             config = Path(folder) / "backwards.lua"
             config.write_text("\n".join(f'plugin "{p}"' for p in reversed(plugins)) + f'\ninclude "{league.config}"\n')
         hashes = Path(folder) / "hashes"

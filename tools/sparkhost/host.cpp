@@ -46,7 +46,7 @@ std::int64_t messagesDropped(const Leaf& root) {
 Host::Host(const Options& options)
     : options_(options),
       bin_(fs::canonical("/proc/self/exe").parent_path()),
-      share_(bin_.parent_path() / "share" / "spark") {
+      share_(options.share.empty() ? bin_.parent_path() / "share" / "spark" : fs::path(options.share)) {
   kernel_.log().setLevel(levelFromName(options.logLevel));
   if (options.seed) kernel_.setSeed(*options.seed);
   scanPlugins();

@@ -108,6 +108,8 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
     const std::string_view word = argv[i];
     if (word == "--record")
       ++i;
+    else if (const auto token = word.find("webToken="); token != std::string_view::npos)
+      out.arguments.push_back(std::string(word.substr(0, token)) + "webToken=not-in-the-recording");
     else if (!word.starts_with("--record="))
       out.arguments.emplace_back(word);
   }

@@ -36,6 +36,7 @@ struct Options {
   std::int64_t hashEvery = 1;          ///< --hash-every
   std::string record;                  ///< --record: file of the recording; "": none
   std::vector<std::string> arguments;  ///< the command line without --record, for the recording
+  std::string share;                   ///< folder with lua/ and scenes/ instead of the program's; "": the program's
   bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
 

@@ -8,6 +8,7 @@
 #include "hang_watch.h"
 #include "host.h"
 #include "mcap.h"
+#include "recorded_files.h"
 #include "spark/error.h"
 
 // Reads recordings of sparkhost --record. Exit codes: 0: done; 1: the simulation differs from the recording; 2: an
@@ -65,16 +66,21 @@ Json describe(const spark::mcap::Reader& recording) {
 }
 
 /// Simulates the recorded run again. Returns the line for stdout, and whether it is the same.
-std::pair<Json, bool> verify(const std::string& file, const std::map<std::string, std::string>& about,
+std::pair<Json, bool> verify(const std::string& file, const spark::mcap::Reader& recording,
                              const std::string& logLevel) {
-  std::vector<std::string> words = recordedArguments(about, file);
+  std::vector<std::string> words = recordedArguments(recording.metadataOf("spark"), file);
   words.insert(words.begin(), "sparkhost");
+  const sparkreplay::RecordedFiles files(recording);
+  std::filesystem::current_path(files.scripts());  // scripts are searched there before anywhere else
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   sparkhost::Options options;
   if (sparkhost::readOptions(static_cast<int>(argv.size()), argv.data(), options))
     throw spark::Error(fmt::format("{}: its command line is of another version", file));
   options.logLevel = logLevel;
+  options.share = files.share();
+  if (const std::filesystem::path config(options.config); config.is_absolute())
+    options.config = files.scripts() / config.filename();
   sparkhost::Host host(options);
   sparkhost::HangWatch::install(host.kernel());  // the command line may set its properties
   host.build();
@@ -87,7 +93,7 @@ std::pair<Json, bool> verify(const std::string& file, const std::map<std::string
     line["differs"] = nullptr;
   else
     line["differs"] = {{"cycle", at}, {"what", property("difference").toString()}};
-  line["lacks"] = Json::array();
+  line["lacks"] = files.lacks();
   const spark::Value lacks = property("lacks");
   for (const spark::Value& v : lacks.toList()) line["lacks"].push_back(v.toString());
   return {line, at < 0};
@@ -106,12 +112,7 @@ int main(int argc, char** argv) {
       fmt::print("{}\n", describe(recording).dump(-1, ' ', false, Json::error_handler_t::replace));
       return 0;
     }
-    const auto about = recording.metadataOf("spark");
-    if (const auto folder = about.find("workingFolder"); folder != about.end()) {
-      std::error_code gone;  // a config of the installed share does not need it
-      std::filesystem::current_path(folder->second, gone);
-    }
-    const auto [line, same] = verify(file, about, arguments.logLevel);
+    const auto [line, same] = verify(file, recording, arguments.logLevel);
     fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
     return same ? 0 : 1;
   } catch (const std::exception& e) {

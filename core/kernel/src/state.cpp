@@ -66,7 +66,7 @@ std::uint64_t configurationHash(const Leaf& root) {
   out.write(root.kernel().seed());
   for (const Sources::Source& s : root.kernel().sources().all()) {
     out.write(s.kind);
-    out.write(s.name);
+    out.write(s.name.starts_with('/') ? s.name.substr(s.name.rfind('/')) : s.name);  // the folder decides nothing
     out.write(s.hash);
   }
   writeConfiguration(root, out);

@@ -29,13 +29,12 @@ TEST_CASE("Inputs are the same after writing and reading, in any number of piece
   const auto inputs = inputsOfAllKinds();
   for (std::size_t each = 1; each <= inputs.size(); ++each) {
     InputWriter writer;
-    InputReader reader;
     std::vector<OwnInput> out;
     for (std::size_t i = 0; i < inputs.size(); ++i) {
       writer.add(view(inputs[i]));
-      if ((i + 1) % each == 0) reader.read(writer.take(), out);
+      if ((i + 1) % each == 0) readInputs(writer.take(), out);
     }
-    reader.read(writer.take(), out);
+    readInputs(writer.take(), out);
     CHECK(out == inputs);
   }
 }
@@ -47,11 +46,11 @@ TEST_CASE("Inputs that are cut off or damaged are refused") {
   for (std::size_t n = 1; n < bytes.size(); ++n) {
     std::vector<OwnInput> out;
     try {
-      InputReader().read(std::string_view(bytes).substr(0, n), out);
+      readInputs(std::string_view(bytes).substr(0, n), out);
     } catch (const Error&) {
     }
     CHECK(out.size() < inputsOfAllKinds().size());
   }
   std::vector<OwnInput> out;
-  CHECK_THROWS_AS(InputReader().read("\x42", out), Error);
+  CHECK_THROWS_AS(readInputs("\x42", out), Error);
 }

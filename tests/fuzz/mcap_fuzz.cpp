@@ -1,0 +1,37 @@
+// Recordings: MCAP files, and the inputs in them.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+
+#include "../../plugins/recorder/input_codec.h"
+#include "../../plugins/recorder/mcap.h"
+#include "spark/error.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const int file = memfd_create("recording", 0);
+  static const std::string name = "/proc/self/fd/" + std::to_string(file);
+  if (ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
+  try {
+    spark::mcap::Reader reader(name);
+    for (const auto& chunk : reader.chunks())
+      reader.forEach(chunk, [&](const spark::mcap::Message& m) {
+        std::vector<spark::recorder::OwnInput> out;
+        try {
+          spark::recorder::readInputs(m.data, out);
+        } catch (const spark::Error&) {
+        }
+        return true;
+      });
+    for (const auto& attachment : reader.attachments()) {
+      try {
+        if (reader.read(attachment).size() != attachment.length) std::abort();
+      } catch (const spark::Error&) {
+      }
+    }
+  } catch (const spark::Error&) {
+  }
+  return 0;
+}

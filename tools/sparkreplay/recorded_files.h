@@ -1,0 +1,34 @@
+#pragma once
+/// \file
+/// The files of a recording, as a share in which a host finds them.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mcap.h"
+
+namespace sparkreplay {
+
+/// A folder with lua/ and scenes/ that exists as long as this object. Configs and scripts are in lua/ by the names by
+/// which they were asked for, without the folder where a name was absolute.
+class RecordedFiles {
+ public:
+  /// Writes the attachments of the recording. Those that are damaged, or whose names lead out of the folder, are left
+  /// out. Throws Error if there is no room for them.
+  explicit RecordedFiles(const spark::mcap::Reader& recording);
+  ~RecordedFiles();
+  RecordedFiles(const RecordedFiles&) = delete;
+  RecordedFiles& operator=(const RecordedFiles&) = delete;
+
+  const std::filesystem::path& share() const { return folder_; }
+  std::filesystem::path scripts() const { return folder_ / "lua"; }
+  /// What could not be written, a sentence each.
+  const std::vector<std::string>& lacks() const { return lacks_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::vector<std::string> lacks_;
+};
+
+}  // namespace sparkreplay
