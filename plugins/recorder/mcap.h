@@ -35,9 +35,9 @@ class Writer {
   /// Writes the head. `library`: who writes.
   Writer(Sink sink, std::string_view library);
   /// Adds a schema; its number, from 1.
-  std::uint16_t schema(Schema schema);
+  std::uint16_t schema(const Schema& schema);
   /// Adds a channel; its number, from 1.
-  std::uint16_t channel(Channel channel);
+  std::uint16_t channel(const Channel& channel);
   /// Adds a message to the chunk. Times of a channel must not fall.
   void message(std::uint16_t channel, Time time, std::string_view data);
   /// Writes a file into the recording.

@@ -56,14 +56,14 @@ void Writer::put(std::string_view bytes) {
 
 void Writer::record(std::uint8_t op, std::string_view content) { put(recordOf(static_cast<Op>(op), content)); }
 
-std::uint16_t Writer::schema(Schema s) {
+std::uint16_t Writer::schema(const Schema& s) {
   const std::size_t id = schemas_.size() + 1;
   schemas_.push_back(Fields().u16(id).text(s.name).text(s.encoding).text(s.data).bytes);
   record(kSchema, schemas_.back());
   return static_cast<std::uint16_t>(id);
 }
 
-std::uint16_t Writer::channel(Channel c) {
+std::uint16_t Writer::channel(const Channel& c) {
   const std::size_t id = channels_.size() + 1;
   channels_.push_back(Fields().u16(id).u16(c.schema).text(c.topic).text(c.encoding).texts({}).bytes);
   record(kChannel, channels_.back());
@@ -144,6 +144,7 @@ void Writer::finish() {
   };
   const auto indexes = [](const std::vector<Index>& all) {
     std::vector<std::string> out;
+    out.reserve(all.size());
     for (const Index& i : all) out.push_back(Fields().u64(i.offset).u64(i.length).raw(i.content).bytes);
     return out;
   };

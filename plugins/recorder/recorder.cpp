@@ -45,7 +45,7 @@ Recorder::~Recorder() = default;
 
 void Recorder::onUnlink() { finish(); }
 
-void Recorder::record(std::string file, std::vector<std::string> arguments) {
+void Recorder::record(std::string file, const std::vector<std::string>& arguments) {
   if (recording_) throw Error(fmt::format("{} records to {} already", path(), file_));
   recording_ = std::make_unique<recorder::Recording>(file, "Spark");
   file_ = std::move(file);
@@ -75,7 +75,7 @@ void Recorder::record(std::string file, std::vector<std::string> arguments) {
   logSink_ = kernel().log().addSink(Level::info, [this](Level level, std::string_view line) { note(level, line); });
 }
 
-/// Takes a line of the log, from any thread. Who reads the recording must not become the referee of a match under way.
+/// Takes a line of the log, from any thread. Who reads the recording must not get the right to change a run.
 void Recorder::note(Level level, std::string_view line) {
   constexpr std::string_view kToken = "#token=";
   const std::size_t secret = std::min(line.find(kToken), line.size());

@@ -32,7 +32,7 @@ class Recorder : public Node, public IInputTape {
 
   /// Begins a recording; the present state is its first. `arguments`: of the program. Throws Error if the file cannot
   /// be written, or if it records already.
-  void record(std::string file, std::vector<std::string> arguments);
+  void record(std::string file, const std::vector<std::string>& arguments);
   /// Writes the rest and the end.
   void finish();
 

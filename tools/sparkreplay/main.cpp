@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -73,6 +74,7 @@ std::pair<Json, bool> verify(const std::string& file, const spark::mcap::Reader&
   const sparkreplay::RecordedFiles files(recording);
   std::filesystem::current_path(files.scripts());  // scripts are searched there before anywhere else
   std::vector<char*> argv;
+  argv.reserve(words.size());
   for (std::string& word : words) argv.push_back(word.data());
   sparkhost::Options options;
   if (sparkhost::readOptions(static_cast<int>(argv.size()), argv.data(), options))
@@ -99,24 +101,25 @@ std::pair<Json, bool> verify(const std::string& file, const spark::mcap::Reader&
   return {line, at < 0};
 }
 
+int run(int argc, char** argv) {
+  Arguments arguments;
+  if (const auto code = read(argc, argv, arguments)) return *code;
+  const std::string file = std::filesystem::absolute(arguments.file);
+  const spark::mcap::Reader recording(file);
+  const auto [line, same] =
+      arguments.verify ? verify(file, recording, arguments.logLevel) : std::pair(describe(recording), true);
+  fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
+  return same ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  sparkhost::installCrashReport("sparkreplay");
-  Arguments arguments;
-  if (const auto code = read(argc, argv, arguments)) return *code;
   try {
-    const std::string file = std::filesystem::absolute(arguments.file);
-    const spark::mcap::Reader recording(file);
-    if (!arguments.verify) {
-      fmt::print("{}\n", describe(recording).dump(-1, ' ', false, Json::error_handler_t::replace));
-      return 0;
-    }
-    const auto [line, same] = verify(file, recording, arguments.logLevel);
-    fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
-    return same ? 0 : 1;
+    sparkhost::installCrashReport("sparkreplay");
+    return run(argc, argv);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkreplay: {}\n", e.what());
+    std::fprintf(stderr, "sparkreplay: %s\n", e.what());
     return 2;
   }
 }

@@ -101,7 +101,7 @@ class DumpReader {
   void readLines(Compiled& f) {
     constexpr int kElsewhere = -0x80;  // the line is in the second list
     std::vector<int> steps(size());
-    for (int& s : steps) s = static_cast<std::int8_t>(byte());
+    for (int& s : steps) s = (byte() ^ 0x80) - 0x80;  // a signed byte
     std::vector<std::pair<std::size_t, int>> absolute(size());
     for (auto& [pc, line] : absolute) pc = size(), line = static_cast<int>(size());
     int line = f.line;
@@ -270,7 +270,7 @@ class Search {
   /// What the upvalue is for messages if it is a table that is not saved, else "". A function is searched.
   std::string table(int number) {
     lua_getupvalue(L_, function_, number);
-    const std::string out = look(fmt::format("the table in the local '{}' outside of it", name(number)));
+    std::string out = look(fmt::format("the table in the local '{}' outside of it", name(number)));
     lua_pop(L_, 1);
     return out;
   }
@@ -289,7 +289,7 @@ class Search {
     return out;
   }
   /// The same for the value on top of the stack.
-  std::string look(std::string what) {
+  std::string look(const std::string& what) {
     if (lua_isfunction(L_, -1)) {
       const auto kept = origin_;
       const int line = line_;
