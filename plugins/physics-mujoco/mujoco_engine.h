@@ -2,6 +2,7 @@
 /// \file
 /// MuJoCo as an engine of the physics server.
 
+#include "api/inputs.h"
 #include "api/phases.h"
 #include "mujoco_constraints.h"
 #include "mujoco_nodes.h"
@@ -33,6 +34,8 @@ class MujocoEngine : public Leaf, public engine::IEngine {
     d.doc("Rigid bodies and contacts by MuJoCo, in coordinates of joints.");
     engine::describeEngine(d);
     d.link(&MujocoEngine::simulation_, At<ISimulation>());
+    d.link(&MujocoEngine::tape_, At<IInputTape>())
+        .doc("Records when a new model takes over in real time, or plays it.");
     d.property("version", &MujocoEngine::version).doc("Version of the library.");
     d.property("atOnce", &MujocoEngine::atOnce_)
         .min(0)
@@ -64,8 +67,9 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   void report(const std::string& message);
 
   Link<ISimulation> simulation_;
+  Link<IInputTape> tape_;
   int atOnce_ = 60;
-  std::int64_t compilations_ = 0, messages_ = 0;
+  std::int64_t compilations_ = 0, compiledAside_ = 0, messages_ = 0;
 };
 
 }  // namespace spark

@@ -97,6 +97,7 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   abandon();
   Pending& p = pending_;
   p.waited = waited;
+  p.number = static_cast<std::uint64_t>(++engine_.compiledAside_);
   p.stepsLeft = stepsToCompile(model.bodies.size());
   p.trees.emplace(model, state);
   p.compiled = std::async(std::launch::async, compileAside, textOf(model, *p.trees), engine_.isPaced());
@@ -115,9 +116,11 @@ void MujocoSolver::takePending(const engine::Model& model) {
   ++p.waited;
   --p.stepsLeft;
   const bool ready = p.compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  // In real time the model takes over as soon as it is ready. Otherwise it takes over after a fixed number of steps, so
-  // that equal runs give equal results, and the simulation may have to wait for it here.
-  if (engine_.isPaced() ? !ready : p.stepsLeft > 0) return;
+  // In real time the model takes over as soon as it is ready, which is an input. Otherwise it takes over after a fixed
+  // number of steps, so that equal runs give equal results, and the simulation may have to wait for it here.
+  const bool paced = engine_.isPaced();
+  const bool taken = paced && engine_.tape_ ? engine_.tape_->decide("compiled", p.number, ready, false) : ready;
+  if (paced ? !taken : p.stepsLeft > 0) return;
   if (!ready)
     engine_.kernel().log().info("{}: waits for MuJoCo's compiler, {} steps after the world changed", engine_.path(),
                                 p.waited);

@@ -31,8 +31,9 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   struct Pending {
     std::optional<Trees> trees;  ///< nullopt: there is none
     std::future<Compiled> compiled;
-    int stepsLeft = 0;  ///< until it takes over
-    int waited = 0;     ///< steps since the first change that is not in yet
+    std::uint64_t number = 0;  ///< of all models that the engine compiles aside
+    int stepsLeft = 0;         ///< until it takes over
+    int waited = 0;            ///< steps since the first change that is not in yet
   };
   void build(const engine::Model& model, const engine::State& state);
   void buildAside(const engine::Model& model, const engine::State& state);

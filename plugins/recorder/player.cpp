@@ -79,7 +79,14 @@ void InputPlayer::describe(Description<InputPlayer>& d) {
 InputPlayer::InputPlayer() = default;
 InputPlayer::~InputPlayer() = default;
 
-void InputPlayer::onUnlink() { connections_.clear(); }
+void InputPlayer::onUnlink() {
+  // Those who know the connections must forget them.
+  for (const auto& [at, connection] : connections_) {
+    const Leaf* const port = connection ? kernel().root().find(at.first) : nullptr;
+    if (IConnectionConsumer* const consumer = port ? consumerOf(*port) : nullptr) consumer->disconnected(*connection);
+  }
+  connections_.clear();
+}
 
 std::vector<std::string> InputPlayer::lacks() const { return reader_ ? reader_->lacks() : std::vector<std::string>(); }
 

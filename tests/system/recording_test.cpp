@@ -96,6 +96,17 @@ TEST_CASE("A match in real time with a trainer, sparkctl and a leaving team is s
   CHECK(code == 0);
 }
 
+TEST_CASE("With MuJoCo in real time a model takes over when it did, in the recording's simulation too") {
+  Recorded match("soccer.lua", "humanoid-team", 2,
+                 {"--rate", "real", "--set", "engine=MujocoEngine", "--set", "/sys/server/physics/engine.atOnce=0"});
+  match.until(100);
+  match.host->signal(SIGTERM);
+  const Json result = match.end();
+  const auto [line, code] = verify(match.file);
+  CHECK(line["cycles"] == result["cycles"]);
+  CHECK(line["differs"].is_null());
+}
+
 TEST_CASE("A host that was killed leaves a recording that can be simulated up to its last chunk") {
   Recorded match("soccer-sphere.lua", "sphere-team", 2, {"--rate", "max", "--sync", "--duration", "100000"});
   while (std::filesystem::file_size(match.file) < 200'000) match.until(100);
