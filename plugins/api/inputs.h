@@ -4,7 +4,7 @@
 /// clock where it decides something. A recorder writes the tape; a player gives it back, and the same simulation
 /// follows.
 ///
-/// Whoever passes something from outside on to the simulation first calls put(), in the simulation's thread. Whoever
+/// Code that passes something from outside to the simulation calls put() first, in the simulation's thread. Code that
 /// decides by the wall clock, or by what a client has read, asks the tape.
 
 #include <chrono>

@@ -282,11 +282,12 @@ bool TcpPort::deliverMessages(TcpConnection& connection) {
     at += frame.consumed;
     connection.markSpoken();
     if (frame.message.empty()) continue;
-    if (consumer_) {
-      if (put(Input::Kind::message, connection, frame.message)) consumer_->received(connection, frame.message);
-    } else {
+    if (!consumer_) {
       connection.close(fmt::format("nothing at '{}' takes messages", consumerPath_));
+      break;
     }
+    put(Input::Kind::message, connection, frame.message);
+    consumer_->received(connection, frame.message);
   }
   if (at > 0) connection.markPartial(false);
   connection.consume(at);
@@ -294,9 +295,9 @@ bool TcpPort::deliverMessages(TcpConnection& connection) {
   return at > 0;
 }
 
-/// False if the input is to be ignored, because recorded ones are played.
-bool TcpPort::put(Input::Kind kind, const TcpConnection& connection, std::string_view text) {
-  return !tape_ || tape_->put({.kind = kind, .place = path(), .key = connection.id(), .text = text});
+/// Writes an input to the tape. While one is played, the network server keeps ports closed.
+void TcpPort::put(Input::Kind kind, const TcpConnection& connection, std::string_view text) {
+  if (tape_) tape_->put({.kind = kind, .place = path(), .key = connection.id(), .text = text});
 }
 
 /// Removes closed connections and notifies the consumer; true if there were any.

@@ -66,7 +66,7 @@ class TcpPort : public Node {
   bool full();
   net::TcpConnection* connectionToEvict() const;
   void closeAll();
-  bool put(Input::Kind kind, const net::TcpConnection& connection, std::string_view text = {});
+  void put(Input::Kind kind, const net::TcpConnection& connection, std::string_view text = {});
   std::int64_t messagesDropped() const { return messagesDropped_; }
   std::int64_t connectionsSeen() const { return connectionsSeen_; }
   int connectionCount() const { return static_cast<int>(connections_.size()); }

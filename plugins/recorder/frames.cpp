@@ -6,17 +6,12 @@
 
 #include "api/appearance.h"
 #include "api/physics.h"
-#include "spark/json_writer.h"
+#include "foxglove.h"
 
 namespace spark::recorder {
 
 namespace {
 constexpr int kDigits = 4;  // decimals of lengths [m] and quaternions
-
-void writeTime(JsonWriter& json, const char* key, mcap::Time time) {
-  constexpr mcap::Time kSecond = 1'000'000'000;
-  json.key(key).beginObject().member("sec", time / kSecond).member("nsec", time % kSecond).endObject();
-}
 
 void writeVector(JsonWriter& json, const char* key, double x, double y, double z) {
   json.key(key).beginObject();
@@ -166,16 +161,6 @@ std::string Frames::places(mcap::Time time) const {
   }
   json.endArray().endObject();
   return out;
-}
-
-const char* Frames::shapesSchema() {
-  return R"({"title":"foxglove.SceneUpdate","type":"object","required":["deletions","entities"],"properties":{)"
-         R"("deletions":{"type":"array","items":{"type":"object"}},"entities":{"type":"array","items":{"type":"object"}}}})";
-}
-
-const char* Frames::placesSchema() {
-  return R"({"title":"foxglove.FrameTransforms","type":"object","required":["transforms"],"properties":{)"
-         R"("transforms":{"type":"array","items":{"type":"object"}}}})";
 }
 
 }  // namespace spark::recorder

@@ -21,10 +21,6 @@ class Frames {
   /// A message of the schema foxglove.FrameTransforms: where they are now, as of the last place phase.
   std::string places(mcap::Time time) const;
 
-  /// These schemas, as JSON.
-  static const char* shapesSchema();
-  static const char* placesSchema();
-
  private:
   void collect(const Node& parent);
   Kernel& kernel_;

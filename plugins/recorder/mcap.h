@@ -32,7 +32,7 @@ class Writer {
  public:
   /// Takes bytes, in order. It may throw; what the writer was asked for is then not in the file.
   using Sink = std::function<void(std::string_view)>;
-  /// Writes the head. `library`: who writes.
+  /// Writes the header. `library`: name of the writing program.
   Writer(Sink sink, std::string_view library);
   /// Adds a schema; its number, from 1.
   std::uint16_t schema(const Schema& schema);

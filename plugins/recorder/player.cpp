@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 #include "api/control.h"
@@ -80,7 +79,7 @@ InputPlayer::InputPlayer() = default;
 InputPlayer::~InputPlayer() = default;
 
 void InputPlayer::onUnlink() {
-  // Those who know the connections must forget them.
+  // Consumers keep pointers to connections until these are disconnected.
   for (const auto& [at, connection] : connections_) {
     const Leaf* const port = connection ? kernel().root().find(at.first) : nullptr;
     if (IConnectionConsumer* const consumer = port ? consumerOf(*port) : nullptr) consumer->disconnected(*connection);
@@ -144,13 +143,11 @@ const OwnInput* InputPlayer::next() {
 void InputPlayer::lost(std::string_view asked) {
   if (std::exchange(lost_, true)) return;
   const OwnInput* const found = next();
-  if (!reader_->lacks().empty()) {
+  if (!reader_->lacks().empty())
     kernel().log().warning("{}: the recording lacks what follows cycle {}", path(), cycle_);
-    if (simulation_) simulation_->stop();
-    return;
-  }
-  differs(cycle_, fmt::format("the simulation asks for {}, the recording has {}", asked,
-                              found ? nameOf(found->kind) : "ended"));
+  else
+    differs(cycle_, fmt::format("the simulation asks for {}, the recording has {}", asked,
+                                found ? nameOf(found->kind) : "ended"));
   if (simulation_) simulation_->stop();
 }
 

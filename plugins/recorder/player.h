@@ -18,8 +18,8 @@
 
 namespace spark {
 
-/// The tape of a recorded run, at /sys/host/tape. It passes the recorded inputs to those who got them, tells the
-/// recorded times and decisions, and compares hashes and states in each cycle.
+/// The tape of a recorded run, at /sys/host/tape. It passes the recorded inputs to their consumers, returns the
+/// recorded times and decisions, and compares the hash of each cycle and the recorded states.
 class InputPlayer : public Node, public IInputTape {
   SPARK_CLASS(InputPlayer, Node)
  public:

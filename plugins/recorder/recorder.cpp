@@ -3,12 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "foxglove.h"
 #include "spark/error.h"
-#include "spark/json_writer.h"
-#include "spark/sources.h"
 #include "spark/state.h"
 
 namespace spark {
@@ -17,10 +15,6 @@ namespace {
 mcap::Time nanoseconds(double seconds) { return static_cast<mcap::Time>(std::llround(seconds * 1e9)); }
 constexpr const char* kHashSchema =
     R"({"type":"object","properties":{"cycle":{"type":"integer"},"state":{"type":"string"}}})";
-constexpr const char* kLogSchema =
-    R"({"title":"foxglove.Log","type":"object","required":["timestamp","level","message","name","file","line"],"properties":{)"
-    R"("timestamp":{"type":"object","properties":{"sec":{"type":"integer"},"nsec":{"type":"integer"}}},"level":{"type":"integer"},)"
-    R"("message":{"type":"string"},"name":{"type":"string"},"file":{"type":"string"},"line":{"type":"integer"}}})";
 }  // namespace
 
 void Recorder::describe(Description<Recorder>& d) {
@@ -49,20 +43,20 @@ void Recorder::record(std::string file, const std::vector<std::string>& argument
   if (recording_) throw Error(fmt::format("{} records to {} already", path(), file_));
   recording_ = std::make_unique<recorder::Recording>(file, "Spark");
   file_ = std::move(file);
+  inputs_.take();
+  attached_.clear();
+  failed_ = false;
   inputChannel_ = recording_->channel({0, std::string(recorder::kInputs), std::string(recorder::kInputsEncoding)});
   stateChannel_ = recording_->channel({0, std::string(recorder::kStates), std::string(recorder::kStatesEncoding)});
   hashChannel_ =
       recording_->channel({0, std::string(recorder::kHashes), "json"}, {"spark.Hash", "jsonschema", kHashSchema});
-  logChannel_ = recording_->channel({0, "/log", "json"}, {"foxglove.Log", "jsonschema", kLogSchema});
+  logChannel_ = recording_->channel({0, "/log", "json"}, recorder::logSchema());
   if (picture_ > 0) {
     frames_ = std::make_unique<recorder::Frames>(kernel());
-    shapeChannel_ = recording_->channel({0, "/scene", "json"},
-                                        {"foxglove.SceneUpdate", "jsonschema", recorder::Frames::shapesSchema()});
-    placeChannel_ = recording_->channel({0, "/tf", "json"},
-                                        {"foxglove.FrameTransforms", "jsonschema", recorder::Frames::placesSchema()});
+    shapeChannel_ = recording_->channel({0, "/scene", "json"}, recorder::shapesSchema());
+    placeChannel_ = recording_->channel({0, "/tf", "json"}, recorder::placesSchema());
   }
   recording_->metadata("spark", {{"arguments", nlohmann::json(arguments).dump()},
-                                 {"workingFolder", std::filesystem::current_path().string()},
                                  {"seed", std::to_string(kernel().seed())},
                                  {"configurationHash", fmt::format("{:016x}", configurationHash(kernel().root()))}});
   const double now = simulation_ ? simulation_->time() : 0;
@@ -79,20 +73,8 @@ void Recorder::record(std::string file, const std::vector<std::string>& argument
 void Recorder::note(Level level, std::string_view line) {
   constexpr std::string_view kToken = "#token=";
   const std::size_t secret = std::min(line.find(kToken), line.size());
-  constexpr mcap::Time kSecond = 1'000'000'000;
   const mcap::Time at = lastTime_;
-  std::string text;
-  JsonWriter json(text);
-  json.beginObject()
-      .key("timestamp")
-      .beginObject()
-      .member("sec", at / kSecond)
-      .member("nsec", at % kSecond)
-      .endObject();
-  // DEBUG, INFO, WARNING and ERROR are 1 to 4.
-  json.member("level", std::max(1, static_cast<int>(level))).member("message", line.substr(0, secret));
-  json.member("name", "sparkhost").member("file", "").member("line", 0).endObject();
-  recording_->message(logChannel_, at, std::move(text));
+  recording_->message(logChannel_, at, recorder::logMessage(at, level, line.substr(0, secret)));
 }
 
 void Recorder::finish() {
@@ -161,10 +143,9 @@ void Recorder::drawFrame(mcap::Time time) {
 /// Files may be read later as well, such as a robot's when an agent joins.
 void Recorder::attachNewTexts(mcap::Time time) {
   const Sources& sources = kernel().sources();
-  if (sources.all().size() == texts_) return;
-  texts_ = sources.all().size();
+  if (sources.all().size() == attached_.size()) return;
   for (const Sources::Source& s : sources.all())
-    if (const std::string* text = sources.text(s.hash); text && attached_.insert(s.hash).second)
+    if (const std::string* text = sources.text(s.hash); attached_.insert(s).second && text)
       recording_->attachment(time, s.kind + ":" + s.name, "application/octet-stream", *text);
 }
 

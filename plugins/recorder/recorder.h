@@ -14,6 +14,7 @@
 #include "recording.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
+#include "spark/sources.h"
 
 namespace spark {
 
@@ -51,8 +52,7 @@ class Recorder : public Node, public IInputTape {
   std::uint16_t inputChannel_ = 0, stateChannel_ = 0, hashChannel_ = 0, logChannel_ = 0, shapeChannel_ = 0,
                 placeChannel_ = 0;
   int logSink_ = 0;
-  std::size_t texts_ = 0;  ///< number of sources that were attached
-  std::set<std::uint64_t> attached_;
+  std::set<Sources::Source> attached_;  ///< texts that are in the recording, or are not to be had
   std::string file_;
   std::unique_ptr<recorder::Frames> frames_;
   double every_ = 10, picture_ = 0.2;  ///< s between key frames, and between places of shapes

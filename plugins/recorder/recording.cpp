@@ -13,13 +13,13 @@
 namespace spark::recorder {
 
 namespace {
-constexpr std::size_t kMaxQueued = 256u << 20;  // bytes that wait for the disk
 constexpr std::size_t kChunkBytes = 4u << 20;
 constexpr mcap::Time kChunkTime = 1'000'000'000;             // ns
 constexpr auto kChunkWall = std::chrono::milliseconds(500);  // of real time
 }  // namespace
 
-Recording::Recording(const std::string& file, std::string library) : file_(file), library_(std::move(library)) {
+Recording::Recording(const std::string& file, std::string library, std::size_t maxQueued)
+    : file_(file), library_(std::move(library)), maxQueued_(maxQueued) {
   fd_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (fd_ < 0) throw Error(fmt::format("cannot write the recording {}: {}", file, std::strerror(errno)));
   thread_ = std::thread([this] { work(); });
@@ -72,8 +72,8 @@ void Recording::queue(Item item) {
     const std::lock_guard lock(mutex_);
     if (!failure_.empty()) return;
     queued_ += item.bytes();
-    if (queued_ > kMaxQueued) {
-      failure_ = fmt::format("{} MB wait for the disk", kMaxQueued >> 20);
+    if (queued_ > maxQueued_) {
+      failure_ = fmt::format("more than {} MB wait for the disk", maxQueued_ >> 20);
       return;
     }
     items_.push_back(std::move(item));
@@ -130,7 +130,10 @@ void Recording::work() {
       if (!ending) continue;
       const std::lock_guard lock(mutex_);
       if (!items_.empty()) continue;
-      writer.finish();
+      if (failure_.empty())
+        writer.finish();
+      else
+        writer.endChunk();
       return;
     }
   } catch (const std::exception& e) {

@@ -18,9 +18,9 @@ namespace spark::recorder {
 /// is full, the recording ends, and failure() says so. One thread calls them.
 class Recording {
  public:
-  /// Opens the file. Throws Error if it cannot be written.
-  Recording(const std::string& file, std::string library);
-  /// Writes what is queued, and the end.
+  /// Opens the file. `maxQueued`: bytes that may wait for the disk. Throws Error if it cannot be written.
+  Recording(const std::string& file, std::string library, std::size_t maxQueued = 256u << 20);
+  /// Writes what is queued, and the end, unless it has failed: readers then say that the end is missing.
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
@@ -54,6 +54,7 @@ class Recording {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::vector<Item> items_;
+  const std::size_t maxQueued_;
   std::size_t queued_ = 0;  ///< bytes
   bool ending_ = false;
   std::string failure_;

@@ -152,7 +152,9 @@ TEST_CASE("A simulation that differs from its recording is named, with cycle, no
 include "boxes.lua"
 get("/sys/server/simulation"):on("rule", function(self, event)
   state.cycles = event.cycle
-  if event.cycle == 30 and get("/sys/host/tape").class == "InputPlayer" then state.cycles = -1 get("/usr/scene/world").gravity = { 0, 0, -9 } end
+  if event.cycle == 30 and get("/sys/host/tape").class == "InputPlayer" then
+    get("/usr/scene/world").gravity = { 0, 0, -9 }
+  end
 end)
 )");
   const std::string file = folder.path() / "run.mcap";
@@ -171,12 +173,11 @@ TEST_CASE("A recording holds its scripts and scenes, and playing it leaves other
   const std::string config = folder.write("mine.lua", R"(
 include "soccer-sphere.lua"
 get("/sys/server/simulation"):attachScript("count.lua", { from = 5 })
+get("/sys/server/scene"):attachScript("again.lua", { from = 6 })    -- the same text
 )");
-  const std::string script = folder.write("count.lua", R"(
-local args = ...
-state.n = args.from
-on("rule", function() state.n = state.n + 1 end)
-)");
+  const std::string counting =
+      "local args = ...\nstate.n = args.from\non('rule', function() state.n = state.n + 1 end)";
+  const std::string scripts[] = {folder.write("count.lua", counting), folder.write("again.lua", counting)};
   const std::string file = folder.path() / "run.mcap", log = folder.path() / "game.log";
   CHECK(runToEnd({program("sparkhost"),
                   "--config",
@@ -203,12 +204,32 @@ on("rule", function() state.n = state.n + 1 end)
   const std::string written = textOf(log);
   CHECK(written.size() > 1000);
   folder.write("mine.lua", "this is no Lua");
-  std::filesystem::remove(script);
+  for (const std::string& script : scripts) std::filesystem::remove(script);
   const auto [line, code] = verify(file);
   CHECK(code == 0);
   CHECK(line["cycles"] == 150);
   CHECK(line["lacks"].empty());
   CHECK(textOf(log) == written);
+}
+
+TEST_CASE("A second recording of a run is whole as well") {
+  TemporaryFolder folder;
+  const std::string second = folder.path() / "second.mcap";
+  const std::string config = folder.write("twice.lua", R"(
+include "boxes.lua"
+get("/sys/server/simulation"):on("act", function(self, event)
+  local tape = get "/sys/host/tape"
+  if event.cycle == 20 then tape:finish() tape:record(")" + second +
+                                                           R"(", { "--config", "twice.lua" }) end
+end)
+)");
+  CHECK(runToEnd({program("sparkhost"), "--config", config, "--rate", "max", "--duration", "1", "--web-port", "0",
+                  "--log-level", "error", "--record", folder.path() / "first.mcap"})
+            .code == 0);
+  const Json about = Json::parse(runToEnd({program("sparkreplay"), second}).out);
+  CHECK(about["seconds"] == Approx(1));
+  CHECK(about["lacks"].empty());
+  CHECK_THAT(about["files"].dump(), Contains("script:boxes.lua"));
 }
 
 TEST_CASE("What is no recording, and what cannot be written, is refused") {

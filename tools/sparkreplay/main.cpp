@@ -55,13 +55,13 @@ std::vector<std::string> recordedArguments(const std::map<std::string, std::stri
   return out;
 }
 
-Json describe(const spark::mcap::Reader& recording) {
+Json describe(const std::string& file, const spark::mcap::Reader& recording) {
   const auto about = recording.metadataOf("spark");
   Json files = Json::array();
   for (const auto& a : recording.attachments()) files.push_back(a.name);
   return {{"seconds", static_cast<double>(recording.end()) * 1e-9},
           {"chunks", recording.chunks().size()},
-          {"arguments", recordedArguments(about, "it")},
+          {"arguments", recordedArguments(about, file)},
           {"files", std::move(files)},
           {"lacks", recording.lacks()}};
 }
@@ -107,7 +107,7 @@ int run(int argc, char** argv) {
   const std::string file = std::filesystem::absolute(arguments.file);
   const spark::mcap::Reader recording(file);
   const auto [line, same] =
-      arguments.verify ? verify(file, recording, arguments.logLevel) : std::pair(describe(recording), true);
+      arguments.verify ? verify(file, recording, arguments.logLevel) : std::pair(describe(file, recording), true);
   fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
   return same ? 0 : 1;
 }

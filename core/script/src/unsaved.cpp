@@ -210,7 +210,7 @@ class Search {
     const auto constant = [&](unsigned i) { return i < f.constants.size() ? f.constants[i] : std::string(); };
     switch (op) {
       case Op::move:
-        origin_[a] = std::string(origin_[b]);
+        origin_[a] = origin_[b];
         return;
       case Op::getUpvalue:
         origin_[a] = upvalue(b) ? table(*upvalue(b)) : "";
@@ -224,7 +224,7 @@ class Search {
       case Op::getTable:
       case Op::getInteger:
       case Op::getField:
-        origin_[a] = std::string(origin_[b]);
+        origin_[a] = origin_[b];
         return;
       case Op::setGlobal:
         if (const auto n = upvalue(a)) writeGlobal(*n, constant(b));
@@ -238,7 +238,7 @@ class Search {
         for (unsigned r = a; r <= a + b && r < origin_.size(); ++r) origin_[r].clear();
         return;
       case Op::self:
-        if (a + 1 < origin_.size()) origin_[a + 1] = std::string(origin_[b]);
+        if (a + 1 < origin_.size()) origin_[a + 1] = origin_[b];
         origin_[a].clear();
         return;
       case Op::call:

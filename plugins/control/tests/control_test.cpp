@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "api/phases.h"
+#include "fake_tape.h"
 #include "spark/error.h"
 #include "temporary_folder.h"
 #include "test_support.h"
@@ -174,6 +175,21 @@ TEST_CASE("set changes a property, also from text, and wrong values are refused 
   REQUIRE(getProperty(*f.simulation, "step").toNumber() == 0.01);
   const Json unknown = f.ask({{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "stepp"}, {"value", 1}});
   REQUIRE(unknown["error"].get<std::string>().find("'step'") != std::string::npos);
+}
+
+TEST_CASE("Requests that change something are put on the tape, and while one is played they are refused") {
+  Fixture f;
+  f.connect();
+  test::FakeTape& tape = test::FakeTape::in(f.host.kernel);
+  const Json set{{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", 0.01}};
+  CHECK(f.ask(set)["ok"] == true);
+  CHECK(f.ask({{"do", "get"}, {"path", "/sys/server/simulation"}})["ok"] == true);
+  CHECK(tape.noted == std::vector<std::string>{": " + set.dump()});
+  tape.plays = true;
+  const Json other{{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", 0.005}};
+  CHECK(f.ask(other)["error"] == "a recording is played: nothing can be changed in it");
+  CHECK(f.ask({{"do", "get"}, {"path", "/sys/server/simulation"}})["ok"] == true);
+  CHECK(getProperty(*f.simulation, "step").toNumber() == 0.01);
 }
 
 TEST_CASE("call runs a method between cycles, and the run loop can be neither nested nor removed") {

@@ -6,6 +6,7 @@
 #include "api/monitor.h"
 #include "api/phases.h"
 #include "fake_scene.h"
+#include "fake_tape.h"
 #include "frame_reader.h"
 #include "test_support.h"
 #include "web_client.h"
@@ -162,6 +163,24 @@ TEST_CASE("Viewers see the scene move and send requests, and a referee changes t
   CHECK(status["agents"].empty());
   viewer.say(R"({"do":"get","id":4,"path":"/usr"})");
   CHECK_THAT(viewer.textWith("\"id\":4"), Contains("no control server"));
+}
+
+TEST_CASE("A referee's command is put on the tape, and while one is played it is refused") {
+  RunningServer server;
+  WebClient referee(server.port);
+  REQUIRE(referee.watch() == 101);
+  referee.say(R"({"do":"login","token":"token-of-this-test"})");
+  CHECK(jsonWith(referee, "\"referee\"")["ok"] == true);
+  FakeTape* tape = nullptr;
+  server.pauseAndServe([&] { tape = &FakeTape::in(server.kernel); });
+  referee.say(R"~({"do":"command","id":1,"text":"(push 3)"})~");
+  CHECK(jsonWith(referee, "\"id\":1")["ok"] == true);
+  server.pauseAndServe([&] {
+    CHECK(tape->noted == std::vector<std::string>{"the web's referee: (push 3)"});
+    tape->plays = true;
+  });
+  referee.say(R"~({"do":"command","id":2,"text":"(push 3)"})~");
+  CHECK(jsonWith(referee, "\"id\":2")["error"] == "a recording is played: nothing can be changed in it");
 }
 
 TEST_CASE("An event has the time of its frame even if it is sent late, and between frames that of the last frame") {

@@ -43,6 +43,26 @@ TEST_CASE("A recording takes messages of several threads, and has all of them wh
   CHECK(reader.read(reader.attachments().at(0)) == "hello");
 }
 
+TEST_CASE("A recording for which the disk is too slow ends, and its readers say that the end is missing") {
+  test::TemporaryFolder folder;
+  const std::string file = folder.path() / "a.mcap";
+  {
+    Recording r(file, "test", 1 << 20);
+    const std::uint16_t a = r.channel({0, "/a", "raw"});
+    r.message(a, 0, "before");
+    r.message(a, 1, std::string(2 << 20, 'x'));
+    CHECK(r.failure() == "more than 1 MB wait for the disk");
+    r.message(a, 2, "after");
+  }
+  mcap::Reader reader(file);
+  REQUIRE(reader.lacks().size() == 1);
+  CHECK_THAT(reader.lacks()[0], Contains("cut off"));
+  std::vector<std::string> read;
+  for (const auto& chunk : reader.chunks())
+    reader.forEach(chunk, [&](const mcap::Message& m) { return read.emplace_back(m.data), true; });
+  CHECK(read == std::vector<std::string>{"before"});
+}
+
 TEST_CASE("A recording that cannot be written says why") {
   CHECK_THROWS_WITH(Recording("/nonexistent/a.mcap", "test"),
                     Contains("cannot write the recording /nonexistent/a.mcap"));
