@@ -243,7 +243,7 @@ class Behavior : public Node {
 /// Game control: connects agents to the simulation. At /sys/server/gamecontrol.
 class IGameControl {
  public:
-  SPARK_INTERFACE(IGameControl, 2);
+  SPARK_INTERFACE(IGameControl, 3);
   static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
   /// The agents, sorted by number. Valid until an agent is added or removed.
@@ -263,6 +263,12 @@ class IGameControl {
   /// Wall time from sending percepts to the agent's next message [s], smoothed over some 16 messages. NaN when it is
   /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
+  /// For a snapshot that is restored: all agents leave the scene at once, as control aspects see it. Those who are
+  /// connected stay so until the state of game control is loaded.
+  virtual void withdrawAgents() = 0;
+  /// For a snapshot that is restored: an agent joins again as it did, below `parent`; control aspects make what they
+  /// made then.
+  virtual void restoreAgent(Node& parent, const std::string& name, int number) = 0;
 };
 
 template <class Why>

@@ -16,11 +16,13 @@
 
 namespace spark {
 
+class IConnection;
+
 /// One thing that came from outside.
 struct Input {
   enum class Kind : std::uint8_t {
     cycle,     ///< no input: the cycle `number` begins
-    time,      ///< the wall clock was read: `number` [ns], from an arbitrary zero
+    time,      ///< the wall clock was read: `number` [us], from an arbitrary zero
     connect,   ///< a client connected to the port at `place`; `text`: its address
     message,   ///< a message from it, without framing
     leave,     ///< it disconnected, or was closed
@@ -50,6 +52,12 @@ class IInputTape {
   /// Playing: passes the inputs to their receivers that came before the next decision or cycle. At the end of the tape
   /// it stops the simulation.
   virtual void play() {}
+  /// Playing, when a state is loaded: the client that was connected to a port when it was saved; valid until it is
+  /// disconnected. nullptr: there is none.
+  virtual IConnection* connection(Node& port, std::uint64_t key) {
+    (void)port, (void)key;
+    return nullptr;
+  }
   /// The wall clock for a decision: `live`, or what it was when the tape was recorded.
   virtual Clock::time_point time(Clock::time_point live) = 0;
   /// The outcome of a decision about `key` that depends on the machine or on the network: `live`, or what it was when

@@ -126,13 +126,16 @@ class IFrameTaker {
 /// The monitor server, at /sys/server/monitor.
 class IMonitorServer {
  public:
-  SPARK_INTERFACE(IMonitorServer, 1);
+  SPARK_INTERFACE(IMonitorServer, 2);
   static constexpr const char* kPath = "/sys/server/monitor";
   virtual ~IMonitorServer() = default;
   /// Makes the next message to every client a full one.
   virtual void requestFullState() = 0;
   /// The newest frame; valid until the next publish phase.
   virtual const MonitorFrame& frame() const = 0;
+  /// The same with what was computed for viewers. Its `frame.cycle` tells whether it was made in this cycle: then its
+  /// pointers are valid in the rest of the publish phase.
+  virtual const NewestFrame& newest() const = 0;
   /// Queues commands as if a monitor had sent them: S-expressions, executed in the next act phase that takes commands.
   /// `from` names the sender in log messages. Returns "" or why some commands will not be executed: they could not be
   /// read, or the queue is full.

@@ -97,6 +97,8 @@ struct State {
   std::size_t turned = 0;      ///< number of joints with turns other than 0
   std::vector<Motors> motors;  ///< by joint
   std::vector<AxisControl> controls;
+  /// By body: DynamicState::version when saved state was loaded. Empty: none was, or bodies were removed since.
+  std::vector<std::uint32_t> loaded;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.
   std::vector<Index> moved;
   /// Appends a body to `moved`, once.

@@ -1,10 +1,10 @@
 #include "control_server.h"
 
 #include <poll.h>
-#include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "api/credentials.h"
 #include "socket_path.h"
 #include "spark/error.h"
 #include "spark/plugin.h"
@@ -17,13 +17,6 @@ namespace spark {
 
 namespace {
 constexpr std::size_t kMaxClients = 16;
-
-/// True if the peer of a connected socket runs as the same user.
-bool isSameUser(int descriptor) {
-  struct ucred peer = {};
-  socklen_t size = sizeof peer;
-  return getsockopt(descriptor, SOL_SOCKET, SO_PEERCRED, &peer, &size) == 0 && peer.uid == geteuid();
-}
 }  // namespace
 
 void ControlServer::describe(Description<ControlServer>& d) {

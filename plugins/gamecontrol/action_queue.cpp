@@ -51,6 +51,18 @@ void ActionQueue::load(StateReader& in) {
   loadPredicates(in, deferred_);
 }
 
+void ActionQueue::saveHold(StateWriter& out) const {
+  out.write(skipNext_);
+  out.write(holdingBack_);
+  out.write(first_);
+}
+
+void ActionQueue::loadHold(StateReader& in) {
+  skipNext_ = in.readBool();
+  holdingBack_ = in.readBool();
+  first_ = in.readString();
+}
+
 void loadPredicates(StateReader& in, Predicates& to) {
   to.clear();
   spark::append(in.readValue().toList(), to);

@@ -30,6 +30,8 @@ class ActionQueue {
 
   /// To be executed in the next act phase.
   const Predicates& pending() const { return pending_; }
+  /// Later than the next act phase.
+  const Predicates& heldBack() const { return deferred_; }
   /// A behaviour adds its first actions to it.
   Predicates& pending() { return pending_; }
   /// A behaviour adds the actions to it that follow from percepts; promote() makes them pending.
@@ -61,6 +63,9 @@ class ActionQueue {
   /// Saves the pending and the deferred actions.
   void save(StateWriter& out) const;
   void load(StateReader& in);
+  /// Saves what is held back and skipped.
+  void saveHold(StateWriter& out) const;
+  void loadHold(StateReader& in);
 
  private:
   void append(const Predicates& actions);

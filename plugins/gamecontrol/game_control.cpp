@@ -9,6 +9,7 @@
 #include <limits>
 #include <utility>
 
+#include "gamecontrol/request_effector.h"
 #include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
 #include "spark/state.h"
@@ -138,9 +139,9 @@ GameControl::Participant* GameControl::participantOf(const IConnection& connecti
   return nullptr;
 }
 
-/// True if there are maxAgents. Clients that never sent anything do not count.
+/// True if there are maxAgents. Clients that never sent anything do not count, nor robots that wait for theirs.
 bool GameControl::full() const {
-  const auto counts = [](const auto& p) { return p->heardFrom(); };
+  const auto counts = [](const auto& p) { return p->heardFrom() && !p->vacant(); };
   return std::count_if(participants_.begin(), participants_.end(), counts) +
              std::count_if(newcomers_.begin(), newcomers_.end(), counts) >=
          maxAgents_;
@@ -209,7 +210,8 @@ bool GameControl::ready(bool lockstep) {
 void GameControl::closeWithoutRobot() {
   if (idleLimit_ <= 0) return;
   for (const auto& p : participants_) {
-    if (p->hasRobot() || p->leaving() || p->inside() ||
+    if (p->joinedAt() == Clock::time_point()) p->joinedSince(actedAt_);  // after a state was loaded
+    if (p->hasRobot() || p->leaving() || p->inside() || p->vacant() ||
         std::chrono::duration<double>(actedAt_ - p->joinedAt()).count() <= idleLimit_)
       continue;
     p->connection()->close(fmt::format("it has no robot after {} s", idleLimit_));
@@ -244,6 +246,7 @@ void GameControl::act(const Event& event) {
   lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
+  if (std::exchange(restored_, false)) dropNameless();  // names are part of the state of what follows in the tree
   removeLeaving();
   joinBehaviors();
   joinNewcomers();
@@ -261,6 +264,10 @@ void GameControl::takeTurn(const Event& event) {
   constexpr double kTolerance = 0.005;  // s
   const double cycles = event.step > 0 ? std::ceil((agentStep_ - kTolerance) / event.step - 1e-9) : 1;
   cyclesToTurn_ = static_cast<int>(std::clamp(cycles, 1.0, 1e6)) - 1;
+
+  if (joinPolicy_ && hasVacant())  // without names they went on when they joined
+    for (const auto& p : participants_)
+      if (!p->vacant() && !p->leaving()) resume(*p);
 
   // Send the percepts of the last turn, then execute the actions that came before.
   if (perceptDelay_ > 0)
@@ -358,8 +365,36 @@ void GameControl::joinNewcomers() {
   while (!newcomers_.empty()) {
     std::unique_ptr<Participant> p = std::move(newcomers_.front());
     newcomers_.erase(newcomers_.begin());
-    if (!p->leaving()) join(std::move(p));
+    if (!p->leaving() && !(hasVacant() && resume(*p))) join(std::move(p));
   }
+}
+
+AgentAspect& GameControl::createAspect(Node& parent, const std::string& name) {
+  auto& aspect = parent.create<AgentAspect>("AgentAspect", name);
+  if (auto scene = aspect.create(createEffector_, "_CreateEffector").as<SceneEffector>())
+    scene->setFolder(robotFolder_);
+  return aspect;
+}
+
+void GameControl::withdrawAgents() {
+  for (const auto& p : participants_) {
+    forEachAspect([&p](ControlAspect& rule) {
+      if (AgentAspect* going = p->aspect()) rule.agentLeaving(*going);
+    });
+    if (AgentAspect* const aspect = p->aspect()) aspect->setNumber(0);
+  }
+  agentsChanged();
+}
+
+void GameControl::restoreAgent(Node& parent, const std::string& name, int number) {
+  Leaf* const there = parent.child(name);
+  const Ref<AgentAspect> aspect = there ? Ref<AgentAspect>(there->as<AgentAspect>()) : Ref(&createAspect(parent, name));
+  if (!aspect) throw Error(fmt::format("{}: expected room for {}, found another object", parent.path(), name));
+  aspect->setNumber(number);
+  if (requests_ && !aspect->child("_Request")) RequestEffector::addTo(*aspect, robotFolder_);
+  forEachAspect([&aspect](ControlAspect& rule) {
+    if (AgentAspect* made = aspect.get()) rule.agentConnected(*made);
+  });
 }
 
 /// Creates the agent's aspect, unless it is `ready`. False if that fails; the participant is removed then.
@@ -372,9 +407,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
     if (!ready) {
       auto* server = kernel().root().find<ISceneServer>();
       Node& scene = server ? server->scene() : require<Node>(ISceneServer::kDefaultScene);
-      aspect = &scene.create<AgentAspect>("AgentAspect", fmt::format("AgentAspect{}", number));
-      if (auto scene = aspect->create(createEffector_, "_CreateEffector").as<SceneEffector>())
-        scene->setFolder(robotFolder_);
+      aspect = &createAspect(scene, fmt::format("AgentAspect{}", number));
     }
     aspect->setNumber(number);
     if (requests_) RequestEffector::addTo(*aspect, robotFolder_);
@@ -465,6 +498,7 @@ void GameControl::saveState(StateWriter& out) const {
   out.write(nextNumber_);
   out.write(agentsSeen_);
   out.write(cyclesToTurn_);
+  out.aside(released_ ? "released" : "");
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
     out.write(p->number());
@@ -476,15 +510,84 @@ void GameControl::loadState(StateReader& in) {
   nextNumber_ = static_cast<int>(in.readInteger());
   agentsSeen_ = static_cast<int>(in.readInteger());
   cyclesToTurn_ = static_cast<int>(in.readInteger());
-  const auto n = in.readInteger();
-  if (n != static_cast<std::int64_t>(participants_.size()))
-    throw Error(fmt::format("{}: the state has {} agents, here are {}. Connect the same agents first.", path(), n,
-                            participants_.size()));
-  for (const auto& p : participants_) {
-    if (const auto number = in.readInteger(); number != p->number())
-      throw Error(fmt::format("{}: the state has agent {} where agent {} is.", path(), number, p->number()));
-    p->load(in);
+  released_ = in.readString() == "released";
+  std::vector<std::unique_ptr<Participant>> restored;
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    const auto number = static_cast<int>(in.readInteger());
+    restored.push_back(Participant::load(in, number, kernel().root()));
+    restored.back()->resolveParser(*this);
   }
+  std::swap(participants_, restored);
+  for (const auto& old : restored)
+    if (IConnection* const connection = old->connection()) {
+      old->disconnect();
+      if (!seat(*connection)) connection->close("the simulation went back to a time without its agent");
+    }
+  if (tape_ && tape_->playing())
+    for (const auto& p : participants_)
+      if (auto* const port =
+              p->vacant() && !p->seat().port.empty() ? kernel().root().find<Node>(p->seat().port) : nullptr)
+        if (IConnection* const client = tape_->connection(*port, p->seat().key)) seat(*client);
+  restored_ = true;
+  // The clock waits for agents that are to come back.
+  if (hasVacant() && !(tape_ && tape_->playing())) released_ = false;
+  agentsChanged();
+  robotsTree_.lookAgain();
+}
+
+/// A robot without a name has no way to be found by its client, which comes as a new one.
+void GameControl::dropNameless() {
+  if (!joinPolicy_) return;
+  for (const auto& p : participants_) {
+    if (!p->vacant()) continue;
+    const auto identity = p->aspect() ? Below<IAgentIdentity>().find(*p->aspect()) : nullptr;
+    if (!identity || identity->number() == 0) p->leave();
+  }
+}
+
+/// A connection of the time when the state was saved goes on with its agent. False if there is none for it.
+bool GameControl::seat(IConnection& connection) {
+  const Participant::Seat seat{connection.port().path(), connection.id()};
+  for (const auto& p : participants_)
+    if (p->vacant() && p->seat() == seat) {
+      p->connect(connection, actedAt_);
+      p->resolveParser(*this);
+      return true;
+    }
+  return false;
+}
+
+/// A client that names a player whose robot stands there without a client goes on as this player; where players have no
+/// names, the first one. False: it does not.
+bool GameControl::resume(Participant& client) {
+  if (!client.connection()) return false;
+  const auto first = [&]() -> Participant* {
+    for (const auto& p : participants_)
+      if (p->vacant() && !p->leaving()) return p.get();
+    return nullptr;
+  };
+  const auto named = [&](const Predicates& actions) -> Participant* {
+    for (const Element e : actions) {
+      if (e.head() != joinPolicy_->predicate()) continue;
+      const IJoinPolicy::Name name = joinPolicy_->read(e);
+      for (const auto& p : participants_) {
+        const auto identity =
+            p->vacant() && !p->leaving() && p->aspect() ? Below<IAgentIdentity>().find(*p->aspect()) : nullptr;
+        if (identity && identity->number() == name.number && identity->team() == name.team) return p.get();
+      }
+    }
+    return nullptr;
+  };
+  Participant* player = joinPolicy_ ? named(client.pending()) : first();
+  if (!player && joinPolicy_) player = named(client.deferred());  // it was held back
+  if (!player) return false;
+  player->takeOver(client, now());
+  logInfo(fmt::format("{} is back.", player->label()));
+  return true;
+}
+
+bool GameControl::hasVacant() const {
+  return std::any_of(participants_.begin(), participants_.end(), [](const auto& p) { return p->vacant(); });
 }
 
 }  // namespace spark

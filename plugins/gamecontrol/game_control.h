@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "api/match.h"
 #include "gamecontrol/hold.h"
 #include "gamecontrol/lockstep_gate.h"
 #include "gamecontrol/participant.h"
@@ -29,6 +30,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   int agentsSeen() const override { return agentsSeen_; }
   const Predicates* percepts(const AgentAspect& agent) const override;
   double latency(const AgentAspect& agent) const override;
+  void withdrawAgents() override;
+  void restoreAgent(Node& parent, const std::string& name, int number) override;
   bool remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) override;
 
   void connected(IConnection& connection) override;
@@ -60,6 +63,11 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void joinBehaviors();
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
+  AgentAspect& createAspect(Node& parent, const std::string& name);
+  bool seat(IConnection& connection);
+  bool resume(gamecontrol::Participant& client);
+  void dropNameless();
+  bool hasVacant() const;
   template <class F>
   void forEachAspect(F f);
   void resolveParsers();
@@ -102,6 +110,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
   bool sync_ = false, requests_ = false;
   bool released_ = false;  ///< the hold is over
+  bool restored_ = false;  ///< a state was loaded since the last act phase
   double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30,
          answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
 

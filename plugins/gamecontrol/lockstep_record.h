@@ -2,6 +2,8 @@
 /// \file
 /// Record of the answers of one agent in lockstep.
 
+#include "spark/state_stream.h"
+
 namespace spark::gamecontrol {
 
 /// Counts sync messages. An agent that has ever sent one is waited for in every cycle; after `kProbation` answers, or
@@ -22,6 +24,21 @@ class LockstepRecord {
   void distrust() { answers_ = 0, pledged_ = false; }
   /// The agent is one of those that the start of the match waited for.
   void setExpected(bool expected) { expected_ = expected; }
+
+  /// Goes on after a new connection, whose record is `client`: what it sent so far is its answer to this cycle.
+  void resume(const LockstepRecord& client) {
+    synced_ = client.synced_;
+    pledged_ |= client.pledged_;
+    expected_ |= client.expected_;
+  }
+  void save(StateWriter& out) const {
+    for (const bool b : {pledged_, synced_, expected_}) out.write(b);
+    out.write(answers_);
+  }
+  void load(StateReader& in) {
+    for (bool* b : {&pledged_, &synced_, &expected_}) *b = in.readBool();
+    answers_ = static_cast<int>(in.readInteger());
+  }
 
   /// It has ever sent a sync predicate, since distrust().
   bool pledged() const { return pledged_; }

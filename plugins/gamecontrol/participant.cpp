@@ -28,6 +28,34 @@ Participant::Participant(Behavior& behavior, Clock::time_point now)
       joinedAt_(now),
       lastHeard_(now) {}
 
+Participant::Participant(int number, AgentAspect& aspect, Behavior* behavior)
+    : label_(behavior ? fmt::format("agent {} ({})", number, behavior->path()) : fmt::format("agent {}", number)),
+      number_(number),
+      behavior_(behavior),
+      aspect_(&aspect),
+      inside_(behavior != nullptr),
+      vacant_(!behavior) {
+  aspect.setNumber(number);
+}
+
+void Participant::connect(IConnection& connection, Clock::time_point now) {
+  connection_ = &connection;
+  vacant_ = false;
+  label_ = fmt::format("agent {} ({})", number_, connection.peer());
+  joinedAt_ = lastHeard_ = now;
+}
+
+void Participant::takeOver(Participant& client, Clock::time_point now) {
+  connect(*client.connection_, now);
+  heardFrom_ = true;
+  parser_ = client.parser_;
+  lockstep_.resume(client.lockstep_);
+  encode();
+  client.connection_ = nullptr;
+  client.actions_.executed();
+  client.leave();
+}
+
 void Participant::join(int number, AgentAspect& aspect, Given given, Clock::time_point now) {
   given_ = given;
   number_ = number;
@@ -212,7 +240,7 @@ void Participant::encode() {
 }
 
 bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
-  if (leaving()) return true;
+  if (leaving() || vacant_) return true;
   if (percepts().empty() && !(inside_ && blind_ && hasRobot_)) return true;
   if (inside_) {
     think(log, cycle);
@@ -257,16 +285,55 @@ void Participant::greet(const Predicates& percepts) {
 }
 
 void Participant::save(StateWriter& out) const {
+  if (out.keeps()) {
+    StateWriter own(true);
+    const AgentAspect* const robot = aspect();
+    own.write(robot ? robot->path() : "");
+    own.write(inside_);
+    own.write(inside_ && behavior() ? behavior()->path() : "");
+    // Without a connection it had none in this run: keys of an earlier one mean nothing.
+    own.write(connection_ ? connection_->port().path() : "");
+    own.write(connection_ ? connection_->id() : 0);
+    own.write(heardFrom_);
+    own.write(hasRobot_);
+    own.write(robot && robotAt_ == robot->changedAt());
+    own.write(given_.effectors);
+    own.write(given_.perceptors);
+    own.write(sent_);
+    lockstep_.save(own);
+    if (!inside_) actions_.save(own);
+    actions_.saveHold(own);
+    out.aside(own.bytes());
+  }
   out.write(cycles_);
   out.write(Value(toList(percepts())));
   if (inside_) actions_.save(out);
 }
 
-void Participant::load(StateReader& in) {
-  cycles_ = in.readInteger();
-  loadPredicates(in, percepts_.percepts());
-  encode();
-  if (inside_) actions_.load(in);
+std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node& root) {
+  const std::string bytes = in.readString();
+  StateReader own(bytes);
+  auto& robot = root.require<AgentAspect>(own.readString());
+  const bool inside = own.readBool();
+  const std::string behavior = own.readString();
+  auto out = std::make_unique<Participant>(number, robot, inside ? &root.require<Behavior>(behavior) : nullptr);
+  out->seat_.port = own.readString();
+  out->seat_.key = static_cast<std::uint64_t>(own.readInteger());
+  out->heardFrom_ = own.readBool();
+  out->hasRobot_ = own.readBool();
+  const bool resolved = own.readBool();
+  out->given_.effectors = static_cast<std::size_t>(own.readInteger());
+  out->given_.perceptors = static_cast<std::size_t>(own.readInteger());
+  out->sent_ = own.readInteger();
+  out->lockstep_.load(own);
+  if (!inside) out->actions_.load(own);
+  out->actions_.loadHold(own);
+  out->cycles_ = in.readInteger();
+  loadPredicates(in, out->percepts_.percepts());
+  if (inside) out->actions_.load(in);
+  // A robot that was built in the last cycle is looked up in the next one.
+  if (resolved || out->hasRobot_) out->resolveRobot();
+  return out;
 }
 
 }  // namespace spark::gamecontrol

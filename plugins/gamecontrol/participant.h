@@ -21,6 +21,7 @@
 /// depend on the time between its connection and that message.
 
 #include <chrono>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -50,6 +51,8 @@ class Participant {
   Participant(IConnection& connection, Clock::time_point now);
   /// An agent inside the host.
   Participant(Behavior& behavior, Clock::time_point now);
+  /// One of saved state, see load().
+  Participant(int number, AgentAspect& aspect, Behavior* behavior);
 
   /// For the log: "agent 3 (127.0.0.1:4711)".
   const std::string& label() const { return label_; }
@@ -66,9 +69,24 @@ class Participant {
   /// Marks it for removal at the start of the next act phase.
   void leave() { leaving_ = true; }
   /// True if it is to be removed: it was marked, or its aspect, behavior or connection is gone.
-  bool leaving() const { return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_); }
+  bool leaving() const {
+    return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_ && !vacant_);
+  }
   /// The connection ended.
   void disconnect() { connection_ = nullptr; }
+  /// True for a client of saved state whose robot stands there, and waits for a connection.
+  bool vacant() const { return vacant_; }
+  /// Where the client was connected when the state was saved.
+  struct Seat {
+    std::string port;  ///< path
+    std::uint64_t key = 0;
+    bool operator==(const Seat&) const = default;
+  };
+  const Seat& seat() const { return seat_; }
+  /// A vacant one goes on with this connection.
+  void connect(IConnection& connection, Clock::time_point now);
+  /// The same, with the connection of a client that has not done anything yet. That one leaves.
+  void takeOver(Participant& client, Clock::time_point now);
 
   /// What game control gives an agent when it joins.
   struct Given {
@@ -79,6 +97,7 @@ class Participant {
   void join(int number, AgentAspect& aspect, Given given, Clock::time_point now);
   /// When it was created or joined last.
   Clock::time_point joinedAt() const { return joinedAt_; }
+  void joinedSince(Clock::time_point then) { joinedAt_ = then; }
   /// True while it has sent messages but its first percepts may be under way.
   bool joining() const { return heardFrom_ && sent_ == 0 && cycles_ <= kCyclesToFirstPercepts; }
 
@@ -96,6 +115,8 @@ class Participant {
   Clock::time_point lastHeard() const { return lastHeard_; }
   /// Received actions that are not executed yet.
   const Predicates& pending() const { return actions_.pending(); }
+  /// Those that are held back.
+  const Predicates& deferred() const { return actions_.heldBack(); }
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
   /// Executes the pending actions that no judge refuses. `event`: of the act phase.
@@ -167,14 +188,16 @@ class Participant {
   /// Sends a message outside of the cycle, to a client that waits for one.
   void greet(const Predicates& percepts);
 
-  /// Saves the cycle count and what is under way inside the host: percepts that were not sent yet, a behavior's
-  /// actions. Messages in the network are not part of the state.
+  /// Saves the cycle count, and what is under way: percepts that were not sent yet, actions. Messages in the network
+  /// are not part of the state.
   void save(StateWriter& out) const;
-  void load(StateReader& in);
+  /// What save() wrote, as a new participant with the robot that stands below `root` by the same path: a client has no
+  /// connection. Throws Error if the robot or the behavior is not there.
+  static std::unique_ptr<Participant> load(StateReader& in, int number, Node& root);
 
  private:
   static constexpr std::int64_t kCyclesToFirstPercepts = 3;
-  bool canSync() const { return !effectors_.syncPredicate().empty() && sent_ > 0; }
+  bool canSync() const { return !vacant_ && !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
   void executeModified(AgentLog& log, const Event& event, const JudgeList& judges);
   void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
@@ -197,7 +220,8 @@ class Participant {
   Ref<AgentAspect> aspect_;
   Ref<IParser> parser_;
   const bool inside_;
-  bool leaving_ = false, heardFrom_ = false, hasRobot_ = false;
+  bool leaving_ = false, heardFrom_ = false, hasRobot_ = false, vacant_ = false;
+  Seat seat_;
   bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
   Given given_;
   LockstepRecord lockstep_;

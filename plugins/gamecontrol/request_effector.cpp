@@ -73,6 +73,22 @@ void RequestPerceptor::sense(Predicates& out, const Event&) {
   answers_.clear();
 }
 
+void RequestPerceptor::saveState(StateWriter& out) const {
+  out.write(static_cast<std::int64_t>(answers_.size()));
+  for (const auto& [name, why] : answers_) {
+    out.write(name);
+    out.write(why);
+  }
+}
+
+void RequestPerceptor::loadState(StateReader& in) {
+  answers_.clear();
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    std::string name = in.readString();
+    answers_.emplace_back(std::move(name), in.readString());
+  }
+}
+
 void RequestEffector::describe(Description<RequestEffector>& d) {
   using R = RequestEffector;
   d.doc("(request (perceptor <class>) (name <name>) (at <node>)): gives the agent a perceptor or an effector.");

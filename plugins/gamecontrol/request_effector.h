@@ -22,6 +22,10 @@ class RequestPerceptor : public Perceptor {
   void add(std::string name, std::string why) { answers_.emplace_back(std::move(name), std::move(why)); }
   void sense(Predicates& out, const Event& event) override;
 
+ protected:
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
+
  private:
   std::vector<std::pair<std::string, std::string>> answers_;
 };
@@ -40,6 +44,10 @@ class RequestEffector : public Effector {
   static void addTo(AgentAspect& aspect, const std::string& folder);
   std::string predicate() const override { return "request"; }
   std::string act(const Element& action) override;
+
+ protected:
+  void saveState(StateWriter& out) const override { out.write(parts_); }
+  void loadState(StateReader& in) override { parts_ = static_cast<int>(in.readInteger()); }
 
  private:
   struct Request {

@@ -44,6 +44,22 @@ class SceneEffector : public Effector {
     return {};
   }
 
+ protected:
+  void saveState(StateWriter& out) const override {
+    out.write(file_);
+    out.write(Value(arguments_));
+    out.write(loaded_);
+    out.write(late_);
+    out.write(failures_);
+  }
+  void loadState(StateReader& in) override {
+    file_ = in.readString();
+    arguments_ = in.readValue().toList();
+    loaded_ = in.readBool();
+    late_ = in.readBool();
+    failures_ = static_cast<int>(in.readInteger());
+  }
+
  private:
   static constexpr std::size_t kMaxNameLength = 512;
 

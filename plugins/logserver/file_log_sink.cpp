@@ -29,7 +29,9 @@ void requireRegular(const std::string& file) {
 
 void FileLogSink::describe(Description<FileLogSink>& d) {
   d.doc("Writes the log to a file, and begins another one when it is full.");
-  d.property("file", &FileLogSink::file, &FileLogSink::setFile).doc("The file, which is continued; empty: none.");
+  d.property("file", &FileLogSink::file, &FileLogSink::setFile)
+      .ofProcess()
+      .doc("The file, which is continued; empty: none.");
   d.property("maxSize", &FileLogSink::maxSize, &FileLogSink::setMaxSize)
       .unit("bytes")
       .range(1000, 1e12)

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "messages.h"
+#include "stream/messages.h"
 
 namespace spark::web {
 

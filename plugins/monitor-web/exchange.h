@@ -3,18 +3,19 @@
 /// Data shared by the simulation thread and the I/O thread that serves viewers. Neither blocks on the other.
 ///
 ///     simulation thread                                 I/O thread
-///     WebMonitor, publish phase   ◄── wanted ─────────  ViewerHub: a lane is due
+///     WebMonitor, publish phase   ◄── wanted ─────────  ViewerHub: a lane is due, or a time of the history
 ///           └─ fills it ──────────── ready ──► wake ──► encodes, sends, requests the next one
 ///     RequestQueue, between cycles ◄─ requests ───────  viewers' requests
 ///           └─ within its budget ─── replies ─► wake ─► to the viewer that sent the request
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "mailbox.h"
-#include "snapshot.h"
+#include "stream/snapshot.h"
 
 namespace spark::web {
 
@@ -49,6 +50,7 @@ struct SimulationReply {
 /// Owned by the WebServer; must outlive the users on both threads.
 class Exchange {
  public:
+  static constexpr double kNow = std::numeric_limits<double>::lowest();
   /// Throws Error if the process has no file descriptor left.
   Exchange();
   ~Exchange();
@@ -57,10 +59,16 @@ class Exchange {
 
   std::atomic<Snapshot*> wanted{nullptr};  ///< lent to the simulation thread, which fills it
   std::atomic<Snapshot*> ready{nullptr};   ///< filled, on its way back to the I/O thread
-  std::atomic<bool> watched{false};        ///< there are viewers, so events are collected
-  Mailbox<SimulationRequest> requests;     ///< I/O thread to simulation thread
-  Mailbox<SimulationReply> replies;        ///< simulation thread to I/O thread
+  /// Simulated time from which `wanted` is to be filled [s]; kNow: with the next frame.
+  std::atomic<double> wantedFrom{kNow};
+  std::atomic<bool> watched{false};     ///< frames are sent or kept, so events are collected
+  Mailbox<SimulationRequest> requests;  ///< I/O thread to simulation thread
+  Mailbox<SimulationReply> replies;     ///< simulation thread to I/O thread
 
+  /// True if the next frame is wanted, whatever its time.
+  bool wantsNow() const {
+    return wanted.load(std::memory_order_acquire) && wantedFrom.load(std::memory_order_relaxed) == kNow;
+  }
   /// Wakes the I/O thread. Any thread; does not block.
   void wake();
   /// The eventfd that wake() makes readable; a reader consumes eight bytes. Owned by this object.

@@ -7,7 +7,7 @@
 #include "api/inputs.h"
 #include "api/monitor.h"
 #include "drawings_message.h"
-#include "messages.h"
+#include "stream/messages.h"
 
 namespace spark::web {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "api/phases.h"
-#include "messages.h"
+#include "stream/messages.h"
 
 namespace spark::web {
 

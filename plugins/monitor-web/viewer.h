@@ -18,10 +18,14 @@ using Clock = std::chrono::steady_clock;
 
 /// An outgoing message. The bytes are shared by all viewers that get the same message.
 struct Message {
-  enum class Kind { text, scene, frame } kind = Kind::text;
+  enum class Kind { text, scene, frame, outline, piece } kind = Kind::text;
   std::shared_ptr<const std::string> bytes;
-  /// True for frames, which are WebSocket binary messages; the others are text messages.
-  bool binary() const { return kind == Kind::frame; }
+  /// True for frames and pieces of the past, which are WebSocket binary messages; the others are text messages.
+  bool binary() const { return kind == Kind::frame || kind == Kind::piece; }
+  /// Frames are skipped for a viewer while one of these is queued for it.
+  bool isPicture() const { return kind == Kind::scene || kind == Kind::frame; }
+  /// While one of these is queued for a viewer, nothing is read from it: it gets one at a time.
+  bool isPast() const { return kind == Kind::outline || kind == Kind::piece; }
 };
 
 /// Maximum number of queued bytes of a viewer; beyond it the viewer is disconnected.
@@ -55,8 +59,11 @@ class Viewer {
   /// Disconnects it. `reason`: at most 120 bytes, sent in the close frame if nothing else is queued.
   void close(std::string_view reason);
   bool closing() const { return closing_; }
-  /// True if the transport may read the next message: few requests are pending and few messages are queued.
-  bool mayRead() const { return pending.size() < kMaxPendingRequests && queue_.size() < 4 * kMaxPendingRequests; }
+  /// True if the transport may read the next message: few requests are pending, few messages and nothing of the past
+  /// are queued.
+  bool mayRead() const {
+    return pending.size() < kMaxPendingRequests && queue_.size() < 4 * kMaxPendingRequests && queuedPast_ == 0;
+  }
 
   // State that the ViewerHub keeps per viewer.
   std::size_t lane = 0;     ///< index of the hub's lane
@@ -85,6 +92,7 @@ class Viewer {
   std::deque<Message> queue_;    ///< the first one is being sent
   std::size_t queuedBytes_ = 0;  ///< of all messages in the queue
   int queuedFrames_ = 0;         ///< scenes and frames in the queue
+  int queuedPast_ = 0;           ///< messages of the past in the queue
   Clock::time_point sendingSince_{};
   bool closing_ = false;
 };

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-#include "referee.h"
+#include "api/credentials.h"
 #include "spark/error.h"
 #include "spark/log.h"
 
@@ -16,10 +16,14 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // The choice of rates is small, which bounds the number of lanes and so of encodings of a frame.
+constexpr int kMaxWrongTokens = 5;  // after which a viewer is disconnected
 constexpr std::array<double, 7> kRates{1, 2, 5, 10, 20, 25, 50};
 
 // Token bucket of each viewer's messages.
 constexpr double kMessageBurst = 400, kMessagesPerSecond = 200;
+constexpr double kHistoryCost = 9;  // a request for the past counts as ten messages
+
+constexpr std::size_t kMaxOutlineBytes = 256u << 10;
 
 constexpr auto kMinSceneInterval = milliseconds(250);   // between scene messages while the scene keeps changing
 constexpr auto kMinAlwaysInterval = milliseconds(100);  // between values of an `always` entry, such as the game time
@@ -44,7 +48,10 @@ Message textMessage(std::string text) {
 }  // namespace
 
 ViewerHub::ViewerHub(Exchange& exchange, Log& log, ViewerHubSettings settings)
-    : exchange_(exchange), log_(log), settings_(std::move(settings)) {}
+    : exchange_(exchange), log_(log), settings_(std::move(settings)) {
+  if (settings_.history > 0) history_.emplace(settings_.history, settings_.historyBytes);
+  exchange_.watched.store(keepsHistory());
+}
 
 ViewerHub::~ViewerHub() { clear(); }
 
@@ -82,7 +89,7 @@ void ViewerHub::onConnect(const std::shared_ptr<Viewer>& viewer, Clock::time_poi
   viewer->budgetUpdatedAt = now;
   enterLane(*viewer, settings_.rate, true);
   exchange_.watched.store(true, std::memory_order_relaxed);
-  viewer->sendText(helloMessage(settings_.step, settings_.rate));
+  viewer->sendText(helloMessage(settings_.step, settings_.rate, settings_.history));
   if (!status_.empty()) viewer->sendText(status_);
   if (now - statusAt_ > kStatusInterval) statusDue_ = now;
 }
@@ -91,7 +98,7 @@ void ViewerHub::onDisconnect(Viewer& viewer) {
   --lanes_[viewer.lane].viewers;
   exchange_.requests.put({SimulationRequest::Kind::disconnect, viewer.id()});
   viewers_.erase(viewer.id());
-  if (viewers_.empty()) exchange_.watched.store(false, std::memory_order_relaxed);
+  if (viewers_.empty()) exchange_.watched.store(keepsHistory(), std::memory_order_relaxed);
 }
 
 // ---- messages from viewers ----
@@ -127,6 +134,8 @@ void ViewerHub::handle(Viewer& viewer, ViewerMessage message) {
       return exchange_.requests.put({Kind::drawings, viewer.id(), 0, {}, false, message.on});
     case What::login:
       return login(viewer, message.text);
+    case What::history:
+      return sendPast(viewer, message);
     case What::unwatch:
       return exchange_.requests.put({Kind::unwatch, viewer.id(), message.id});
     case What::command:
@@ -148,6 +157,29 @@ void ViewerHub::login(Viewer& viewer, std::string_view token) {
   log_.warning("Web: {} gave a wrong referee's token.", viewer.peer());
   if (++viewer.wrongTokens >= kMaxWrongTokens) return viewer.close("too many wrong tokens");
   viewer.sendText("{\"type\":\"referee\",\"ok\":false,\"error\":\"this is not the token that the host printed\"}");
+}
+
+// ---- the past ----
+
+/// Answers with a message and, for a piece or a scene, a binary one behind it. Until they are sent nothing more is read
+/// from this viewer.
+void ViewerHub::sendPast(Viewer& viewer, const ViewerMessage& message) {
+  viewer.messageBudget -= kHistoryCost;
+  if (viewer.messageBudget < 0) return viewer.close("too many messages");
+  if (!keepsHistory()) return viewer.sendText(reply("answer", message.id, failure("this host keeps no history")));
+  if (!message.at && !message.scene) return sendOutline(viewer, message.id);
+  const auto bytes = message.at ? history_->pieceAt(*message.at) : history_->scene(*message.scene);
+  if (!bytes) return viewer.sendText(reply("answer", message.id, failure("this is not in the history")));
+  viewer.sendText(reply("answer", message.id,
+                        fmt::format(R"({{"ok":true,"from":{:.9g},"to":{:.9g}}})", history_->from(), history_->to())));
+  viewer.send({Message::Kind::piece, bytes});
+}
+
+void ViewerHub::sendOutline(Viewer& viewer, std::int64_t id) {
+  std::string text = reply("answer", id,
+                           fmt::format(R"({{"ok":true,"from":{:.9g},"to":{:.9g},"messages":{}}})", history_->from(),
+                                       history_->to(), history_->outline(kMaxOutlineBytes)));
+  viewer.send({Message::Kind::outline, std::make_shared<const std::string>(std::move(text))});
 }
 
 /// Each viewer has one request at a time with the simulation thread, so a viewer that sends many does not delay others.
@@ -214,7 +246,8 @@ void ViewerHub::takeSnapshot(Clock::time_point now) {
   if (snapshot_.scene) takeScene(now);
   sendEnvironment(now);
   if (snapshot_.shape != shape_) return;  // the scene changed again and is not described yet
-  updateToggled();
+  toggles_.update(snapshot_.visible);
+  if (keepsHistory()) history_->take(snapshot_, shapeNumber_, toggles_.nodes());
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
     if (lane.viewers > 0 && now >= lane.due - toleranceOf(lane.rate)) sendLane(i, now);
@@ -225,15 +258,9 @@ void ViewerHub::takeScene(Clock::time_point now) {
   shape_ = snapshot_.shape;
   scene_ = std::make_shared<const std::string>(sceneMessage(snapshot_, ++shapeNumber_));
   sceneAt_ = now;
+  if (keepsHistory()) history_->takeScene(shapeNumber_, *scene_);
   snapshot_.scene.reset();
-  visible_ = snapshot_.visible;
-  toggled_.clear();
-}
-
-void ViewerHub::updateToggled() {
-  for (std::uint32_t i = 0; i < visible_.size(); ++i)
-    if (visible_[i] != snapshot_.visible[i] && std::find(toggled_.begin(), toggled_.end(), i) == toggled_.end())
-      toggled_.push_back(i);
+  toggles_.begin(snapshot_.visible);
 }
 
 void ViewerHub::sendEnvironment(Clock::time_point now) {
@@ -254,7 +281,7 @@ void ViewerHub::sendLane(std::size_t index, Clock::time_point now) {
   Lane& lane = lanes_[index];
   const Clock::duration period = periodOf(lane.rate);
   lane.due = std::max(lane.due + period, now + period / 2);
-  lane.encoder.advance({shapeNumber_, snapshot_.time, snapshot_.transforms, snapshot_.visible, toggled_});
+  lane.encoder.advance({shapeNumber_, snapshot_.time, snapshot_.transforms, snapshot_.visible, toggles_.nodes()});
   lane.key.reset();
   lane.delta.reset();
   for (const auto& [id, viewer] : viewers_)
@@ -284,19 +311,22 @@ void ViewerHub::sendScene(Viewer& viewer) {
 
 // ---- timing ----
 
-/// Requests a snapshot if a lane is due. Returns when the first lane will be due, or max() if a snapshot is under way
-/// or there are no viewers.
+/// Requests a snapshot if a lane is due, or for the history. Returns when the first lane will be due, or max() if a
+/// snapshot for it is under way or there are no viewers.
 Clock::time_point ViewerHub::requestSnapshot(Clock::time_point now) {
-  if (snapshotLent_ || viewers_.empty()) return Clock::time_point::max();
   Clock::time_point first = Clock::time_point::max();
   for (const Lane& lane : lanes_)
     if (lane.viewers > 0) first = std::min(first, lane.due - toleranceOf(lane.rate));
-  if (first > now) return first;
-  snapshot_.knownShape = shape_;
-  snapshot_.describe = now - sceneAt_ >= kMinSceneInterval;
-  snapshotLent_ = true;
-  exchange_.wanted.store(&snapshot_, std::memory_order_release);
-  return Clock::time_point::max();
+  const bool due = first <= now;
+  if (due) exchange_.wantedFrom.store(Exchange::kNow, std::memory_order_relaxed);
+  if (!snapshotLent_ && (due || keepsHistory())) {
+    if (!due) exchange_.wantedFrom.store(history_->due(), std::memory_order_relaxed);
+    snapshot_.knownShape = shape_;
+    snapshot_.describe = now - sceneAt_ >= kMinSceneInterval;
+    snapshotLent_ = true;
+    exchange_.wanted.store(&snapshot_, std::memory_order_release);
+  }
+  return due ? Clock::time_point::max() : first;
 }
 
 /// A busy simulation thread may not reply in time: waiters then get the last known status.

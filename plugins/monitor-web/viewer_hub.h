@@ -6,15 +6,17 @@
 /// if one of its viewers needs it, as a key frame. A viewer that is still busy with an earlier frame skips frames and
 /// resumes with a key frame.
 ///
-/// The hub requests a snapshot from the simulation thread shortly before the next lane is due, and requests none while
-/// there are no viewers.
+/// The hub requests a snapshot from the simulation thread shortly before the next lane is due, and whenever simulated
+/// time has advanced enough for the history's next frame. Without viewers and history it requests none.
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <vector>
 
-#include "messages.h"
-#include "stream_encoder.h"
+#include "history.h"
+#include "stream/messages.h"
+#include "stream/stream_encoder.h"
 #include "viewer.h"
 #include "viewer_message.h"
 
@@ -26,10 +28,12 @@ namespace spark::web {
 
 /// Settings of a ViewerHub; fixed while it lives.
 struct ViewerHubSettings {
-  std::string token;         ///< the referee's
-  double step = 0.02;        ///< s, simulated time of a cycle
-  double rate = 20;          ///< frames a second, unless a viewer requests another rate
-  double stallTimeout = 10;  ///< s; a viewer whose current message takes longer to send is disconnected
+  std::string token;                     ///< the referee's
+  double step = 0.02;                    ///< s, simulated time of a cycle
+  double rate = 20;                      ///< frames a second, unless a viewer requests another rate
+  double stallTimeout = 10;              ///< s; a viewer whose current message takes longer to send is disconnected
+  double history = 0;                    ///< s, simulated time that is kept for viewers; 0: none
+  std::size_t historyBytes = 64u << 20;  ///< most memory for it
 };
 
 class ViewerHub {
@@ -81,13 +85,15 @@ class ViewerHub {
   std::size_t laneFor(double rate, bool fine);
   void enterLane(Viewer& viewer, double rate, bool fine);
   bool charge(Viewer& viewer, Clock::time_point now);
+  bool keepsHistory() const { return history_.has_value(); }
   void handle(Viewer& viewer, ViewerMessage message);
   void login(Viewer& viewer, std::string_view token);
+  void sendPast(Viewer& viewer, const ViewerMessage& message);
+  void sendOutline(Viewer& viewer, std::int64_t id);
   void enqueue(Viewer& viewer, SimulationRequest request);
 
   void takeSnapshot(Clock::time_point now);
   void takeScene(Clock::time_point now);
-  void updateToggled();
   void sendEnvironment(Clock::time_point now);
   void sendLane(std::size_t lane, Clock::time_point now);
   void sendFrame(Viewer& viewer, Lane& lane);
@@ -115,10 +121,11 @@ class ViewerHub {
   std::uint64_t shape_ = 0;                   ///< MonitorFrame::shape of `scene_`
   std::uint32_t shapeNumber_ = 0;             ///< the same in messages: counts from 1
   Clock::time_point sceneAt_{};               ///< when `scene_` was made
-  std::vector<std::uint8_t> visible_;         ///< of each node, as `scene_` has it
-  std::vector<std::uint32_t> toggled_;        ///< nodes whose visibility has ever differed from `visible_`
+  Toggles toggles_;                           ///< nodes whose visibility has changed since `scene_` was made
   ChangeTracker environment_;
   Clock::time_point alwaysDue_{};  ///< when entries with policy `always` are sent again
+
+  std::optional<History> history_;  ///< of the last minutes; empty: none is kept
 
   std::string status_;  ///< the last status message; "": none yet
   bool statusRequested_ = false;

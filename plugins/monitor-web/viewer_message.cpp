@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "spark/error.h"
@@ -51,6 +52,17 @@ void readView(const Json& message, ViewerMessage& out) {
   if (*detail != "fine" && *detail != "coarse") throw Error("expected \"fine\" or \"coarse\" as \"detail\"");
   out.fine = *detail == "fine";
 }
+void readHistory(const Json& message, ViewerMessage& out) {
+  if (const auto at = message.find("at"); at != message.end()) {
+    if (!at->is_number()) throw Error("expected a time in seconds as \"at\"");
+    out.at = at->get<double>();
+  }
+  if (const auto scene = message.find("scene"); scene != message.end()) {
+    if (!scene->is_number_unsigned() || scene->get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+      throw Error("expected the number of a scene as \"scene\"");
+    out.scene = scene->get<std::uint32_t>();
+  }
+}
 }  // namespace
 
 ViewerMessage readViewerMessage(std::string_view text) {
@@ -66,6 +78,10 @@ ViewerMessage readViewerMessage(std::string_view text) {
     const auto on = message.find("on");
     if (on == message.end() || !on->is_boolean()) throw Error("expected \"on\" to be true or false");
     out.on = on->get<bool>();
+  } else if (what == "history") {
+    out.what = What::history;
+    out.id = idOf(message, true);
+    readHistory(message, out);
   } else if (what == "login") {
     out.what = What::login;
     out.text = textOf(message, "token");

@@ -17,14 +17,17 @@ struct ViewerMessage {
     login,     ///< `text` is the referee's token
     command,   ///< `text` is a trainer command
     unwatch,   ///< ends watch `id`
+    history,   ///< the piece of the past at `at`, or scene `scene`; without both, the outline
     request,   ///< any other: forwarded to the simulation thread
   } what = What::request;
   std::int64_t id = 0;
   double rate = 0;             ///< frames a second, kMinRate..kMaxRate; 0: unchanged
   std::optional<bool> fine{};  ///< empty: unchanged
   bool on = true;
-  bool watch = false;  ///< request: starts a watch
-  std::string text;    ///< request: the whole message
+  std::optional<double> at{};            ///< s, simulated; finite
+  std::optional<std::uint32_t> scene{};  ///< number of a scene
+  bool watch = false;                    ///< request: starts a watch
+  std::string text;                      ///< request: the whole message
 };
 
 /// Maximum size of a message in bytes.

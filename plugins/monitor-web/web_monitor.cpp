@@ -1,7 +1,7 @@
 #include "web_monitor.h"
 
-#include "scene_capture.h"
 #include "spark/kernel.h"
+#include "stream/scene_capture.h"
 
 namespace spark {
 
@@ -39,21 +39,20 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
 
 void WebMonitor::takeAgain() {
   web::Exchange* exchange = this->exchange();
-  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_relaxed)) return;
+  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_acquire)) return;
+  const bool setBack = time_ < takenTime_;
+  if (time_ < exchange->wantedFrom.load(std::memory_order_relaxed) && !setBack) return;
   if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // its pointers may dangle
   web::Snapshot* snapshot = exchange->wanted.exchange(nullptr, std::memory_order_acquire);
   if (!snapshot) return;
+  takenTime_ = time_;
   fill(*newest_, time_, *snapshot);
   exchange->ready.store(snapshot, std::memory_order_release);
   exchange->wake();
 }
 
 void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out) {
-  out.shape = newest.frame.shape;
-  out.time = time;
-  web::copyNodes(newest.frame, out);
-  out.environment = newest.frame.env;
-  out.keys = newest.keys;
+  web::copyFrame(newest, time, out);
   eventTimes_.resize(eventCount_, time);  // of events that came between frames, as when a monitor connects
   std::swap(out.events, events_);
   std::swap(out.eventTimes, eventTimes_);

@@ -8,8 +8,8 @@
 
 namespace spark {
 
-/// A child of the monitor server. Copies the newest frame when the I/O thread requests one; otherwise it costs an
-/// atomic load per cycle. It has no state: watching does not change the simulation.
+/// A child of the monitor server. Copies the newest frame when the I/O thread requests one; otherwise it costs two
+/// atomic loads per cycle. It has no state: watching does not change the simulation.
 class WebMonitor : public Node, public IFrameTaker {
   SPARK_CLASS(WebMonitor, Node)
  public:
@@ -18,7 +18,7 @@ class WebMonitor : public Node, public IFrameTaker {
   void event(const Element& event) override;
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
-  /// Hands over the last frame again if the I/O thread has requested one. The WebServer calls it between cycles while
+  /// Hands over the last frame, again, if the I/O thread has requested one. The WebServer calls it between cycles while
   /// the clock is paused.
   void takeAgain();
 
@@ -32,6 +32,7 @@ class WebMonitor : public Node, public IFrameTaker {
   std::size_t eventCount_ = 0;
   const NewestFrame* newest_ = nullptr;  ///< the monitor server's
   double time_ = 0;                      ///< s, simulated, of `newest_`
+  double takenTime_ = 0;                 ///< s, simulated, of the last snapshot
   std::uint64_t takenAt_ = 0;            ///< structure version when `newest_` was set
 };
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "referee.h"
+#include "api/credentials.h"
 #include "request_queue.h"
 #include "service.h"
 #include "spark/plugin.h"
@@ -45,6 +45,14 @@ void WebServer::describe(Description<WebServer>& d) {
       .unit("1/s")
       .range(1, 50)
       .doc("Frames that a viewer gets unless it requests another rate.");
+  d.property("history", &W::history_)
+      .unit("s")
+      .range(0, 36000)
+      .doc("Simulated time that is kept in memory, so that viewers can scroll back; 0: none.");
+  d.property("historyMemory", &W::historyMemory_)
+      .unit("MB")
+      .range(1, 65536)
+      .doc("Most memory for it; if it is too little, less time is kept.");
   d.property("maxConnections", &W::maxConnections_)
       .range(16, 100000)
       .doc(
@@ -130,7 +138,7 @@ void WebServer::listen() {
 }
 
 void WebServer::open() {
-  if (token_.empty()) token_ = web::makeToken();
+  if (token_.empty()) token_ = makeToken();
   web::ServiceSettings s;
   s.address = address_;
   s.port = static_cast<unsigned short>(port_);
@@ -141,6 +149,8 @@ void WebServer::open() {
   s.hub.token = token_;
   s.hub.rate = rate_;
   s.hub.stallTimeout = stallTimeout_;
+  s.hub.history = history_;
+  s.hub.historyBytes = static_cast<std::size_t>(historyMemory_) << 20;
   if (const auto* clock = kernel().root().find<ISimulation>()) s.hub.step = clock->step();
   service_ = std::make_unique<web::Service>(std::move(s), exchange_, kernel().log());
   requests_ = std::make_unique<web::RequestQueue>(kernel(), exchange_);
@@ -149,7 +159,7 @@ void WebServer::open() {
 void WebServer::poll() {
   if (!tried_) listen();
   if (!service_) return;
-  if (exchange_.wanted.load(std::memory_order_relaxed)) handOverAgain();
+  if (exchange_.wantsNow()) handOverAgain();
   requests_->process({share_, inspection_ == "everybody", refereeChanges_}, service_->viewers());
 }
 

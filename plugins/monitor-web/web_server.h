@@ -62,7 +62,8 @@ class WebServer : public Node, public IInputSource {
   std::string address_ = "127.0.0.1", viewerFolder_, viewerLacks_, logs_, inspection_ = "everybody";
   std::vector<std::string> hosts_;
   int port_ = 3280, maxConnections_ = 512, maxViewers_ = 256;
-  double rate_ = 20, share_ = 0.02, stallTimeout_ = 10, requestTimeout_ = 15;
+  int historyMemory_ = 64;
+  double history_ = 300, rate_ = 20, share_ = 0.02, stallTimeout_ = 10, requestTimeout_ = 15;
   bool refereeChanges_ = true;
   std::string token_;
 

@@ -25,7 +25,10 @@ std::size_t drawCommandBytes(std::string_view line) {
 }
 }  // namespace
 
-LogFile::LogFile(const std::string& path) : in_(path, std::ios::binary) {
+void LogFile::open(const std::string& path) {
+  records_.clear();
+  skipped_ = 0;
+  in_ = std::ifstream(path, std::ios::binary);
   if (std::filesystem::is_directory(path))
     throw Error(fmt::format("The log '{}' is a folder; expected a file of monitor messages.", path));
   if (!in_)

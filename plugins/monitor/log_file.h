@@ -1,37 +1,34 @@
 #pragma once
 /// \file
-/// Random access to the records of a log.
+/// Monitor logs as files of text.
 
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <vector>
 
+#include "api/game_log.h"
+
 namespace spark {
 
 /// A recorded game: each line is a record, one monitor message, perhaps after draw commands, `[1, 0, -3]...`. A message
 /// is an S-expression, or a JSON array, which begins with two brackets. Lines that are neither are skipped. Only an
 /// index is in memory.
-class LogFile {
+class LogFile : public IGameLog {
  public:
   static constexpr std::size_t kMaxLineBytes = 8u << 20;  ///< longer lines are skipped
   static constexpr std::size_t kMaxRecords = 1u << 20;    ///< further ones are skipped; 58 hours at 0.2 s
 
-  /// Reads the file and builds the index. Throws Error if it cannot be read or has no record.
-  explicit LogFile(const std::string& path);
-
-  /// Number of records, at least 1.
-  std::size_t size() const { return records_.size(); }
+  bool recognises(std::string_view) const override { return true; }
+  /// Reads the file and builds the index.
+  void open(const std::string& path) override;
+  std::size_t size() const override { return records_.size(); }
+  const std::string& read(std::size_t i) override;
+  const std::string& readDrawings(std::size_t i) override;
+  std::size_t fullBefore(std::size_t i) const override { return records_.at(i).full; }
+  bool hasDrawings(std::size_t i) const override { return records_.at(i).drawn > 0; }
   /// Number of lines that were skipped.
   std::size_t skipped() const { return skipped_; }
-  /// The message of record i; "" if the file was truncated since it was opened. Valid until the next read.
-  const std::string& read(std::size_t i);
-  /// The draw commands of record i, as they are in the file. Valid until the next read.
-  const std::string& readDrawings(std::size_t i);
-  /// Index of the last full record at or before i; 0 if there is none.
-  std::size_t fullBefore(std::size_t i) const { return records_.at(i).full; }
-  /// True if record i has draw commands.
-  bool hasDrawings(std::size_t i) const { return records_.at(i).drawn > 0; }
 
  private:
   struct Record {

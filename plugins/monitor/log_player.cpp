@@ -12,6 +12,7 @@ namespace {
 constexpr double kMaxSpeed = 100;
 constexpr double kTolerance = 1e-6;            // records; the sum of time steps is not exact
 constexpr std::int64_t kMaxDamagedLines = 10;  // in the log, about damaged records
+constexpr std::size_t kBegin = 64;             // bytes of a file that tell its format
 constexpr std::size_t kMaxPerFrame = 250;      // records of a seek, so that it does not delay frames
 }  // namespace
 
@@ -19,10 +20,15 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
   using P = LogPlayer;
   d.doc(
       "Plays a log to monitors. Commands: (p) pause, (f) forward, (b) back, (l) reverse, (speed x), "
-      "(record n).");
-  d.property("file", &P::file, &P::setFile).doc("The log: one monitor message a line. Opened when it is set.");
+      "(record n), (time t).");
+  d.link(&P::formats_, Child<IGameLog>());
+  d.property("file", &P::file, &P::setFile)
+      .doc("The log: one monitor message a line, or a format that a child reads. Opened when it is set.");
   d.property("commands", &P::commands).doc("Names of the commands that it takes.");
-  d.property("recordTime", &P::recordTime_).unit("s").range(0.001, 60).doc("Time between two records.");
+  d.property("recordTime", &P::recordTime_)
+      .unit("s")
+      .range(0.001, 60)
+      .doc("Time between two records; some files tell it.");
   d.property("speed", &P::speed_).range(0, kMaxSpeed).state().doc("1: as it was recorded; 2: twice as fast.");
   d.property("paused", &P::paused_).state().doc("Playing is paused; (p) toggles it.");
   d.property("backward", &P::backward_).state().doc("Plays backwards; (l) toggles it.");
@@ -32,6 +38,11 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
       .doc(
           "The record that is shown, from 0. Setting it shows that record; without a file it is where the next file "
           "begins.");
+  d.property("time", &P::time, &P::setTime)
+      .ofProcess()
+      .unit("s")
+      .min(0)
+      .doc("Recorded time of the record that is shown. Setting it shows the last record up to then.");
   d.property("records", &P::records).doc("Number of records.");
   d.property("damaged", &P::damaged_).readOnly().doc("Number of records that could not be played and were skipped.");
   d.implements<IFrameSource>();
@@ -39,7 +50,8 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
 }
 
 void LogPlayer::setFile(std::string path) {
-  log_.reset();
+  text_.reset();
+  format_ = nullptr;
   scene_.clear();
   due_ = 0;
   target_.reset();
@@ -49,16 +61,53 @@ void LogPlayer::setFile(std::string path) {
   damaged_ = 0;
   path_ = std::move(path);
   if (path_.empty()) return;
-  log_ = std::make_unique<LogFile>(path_);
-  seek(std::min(at_, log_->size() - 1));
+  std::string begin(kBegin, '\0');
+  std::ifstream file(path_, std::ios::binary);
+  begin.resize(static_cast<std::size_t>(file.read(begin.data(), kBegin).gcount()));
+  const auto format =
+      std::find_if(formats_.begin(), formats_.end(), [&](const auto& f) { return f->recognises(begin); });
+  if (format == formats_.end()) {
+    auto text = std::make_unique<LogFile>();
+    text->open(path_);
+    text_ = std::move(text);
+  } else {
+    (*format)->open(path_);
+    format_ = format->leaf;
+  }
+  if (log()->interval() > 0) recordTime_ = log()->interval();
+  seek(std::min(at_, log()->size() - 1));
+}
+
+IGameLog* LogPlayer::log() const {
+  const Leaf* const leaf = format_.get();
+  IGameLog* const format = leaf ? leaf->as<IGameLog>().object : nullptr;
+  return format && format->size() > 0 ? format : text_.get();
+}
+
+double LogPlayer::time() const {
+  const auto at = static_cast<std::size_t>(record());
+  const double t = log() && at < log()->size() ? log()->time(at) : NAN;
+  return std::isfinite(t) ? t : static_cast<double>(at) * recordTime_;
+}
+
+/// The last record that is not later than a time.
+std::size_t LogPlayer::recordAt(double seconds) const {
+  const std::size_t n = log() ? log()->size() : 0;
+  if (n == 0 || !std::isfinite(log()->time(0))) return static_cast<std::size_t>(seconds / recordTime_ + kTolerance);
+  std::size_t low = 0;
+  for (std::size_t high = n; high - low > 1;) {
+    const std::size_t middle = (low + high) / 2;
+    (log()->time(middle) <= seconds + kTolerance ? low : high) = middle;
+  }
+  return low;
 }
 
 /// Applies a record to the scene. A damaged one is logged and leaves the scene as it was.
 void LogPlayer::apply(std::size_t record) {
   draw(record);
-  const std::string wrong = scene_.take(log_->read(record), childOf<IParser>());
+  const std::string wrong = scene_.take(log()->read(record), childOf<IParser>());
   at_ = record;
-  snapshots_.onRecord(record, record - log_->fullBefore(record), scene_);
+  snapshots_.onRecord(record, record - log()->fullBefore(record), scene_);
   if (wrong.empty()) return;
   if (++damaged_ <= kMaxDamagedLines)
     kernel().log().warning("{}: record {} of '{}' is passed over: {}", path(), record, path_, wrong);
@@ -66,7 +115,7 @@ void LogPlayer::apply(std::size_t record) {
 
 /// Draws the packets of a record. In the file they are lists of signed bytes: `[0, 0, 97, 0][2, 2, -128]`.
 void LogPlayer::draw(std::size_t record) {
-  const std::string& text = log_->readDrawings(record);
+  const std::string& text = log()->readDrawings(record);
   auto* drawings = text.empty() ? nullptr : kernel().root().find<IDrawings>();
   if (!drawings) return;
   std::vector<std::byte> packet;
@@ -96,8 +145,10 @@ void LogPlayer::setRecord(std::int64_t record) {
   target_.reset();
   seeking_ = false;
   at_ = static_cast<std::size_t>(record);
-  if (log_) seek(std::min(at_, log_->size() - 1));
+  if (log()) seek(std::min(at_, log()->size() - 1));
 }
+
+void LogPlayer::setTime(double seconds) { setRecord(static_cast<std::int64_t>(recordAt(seconds))); }
 
 /// Shows a record now, however far away it is.
 void LogPlayer::seek(std::size_t target) {
@@ -110,13 +161,13 @@ void LogPlayer::seek(std::size_t target) {
 void LogPlayer::beginSeek(std::size_t target) {
   sendEvents_ = false;
   clearDrawings();
-  const std::size_t full = log_->fullBefore(target);
+  const std::size_t full = log()->fullBefore(target);
   std::size_t record = full;
   const RecordedScene::Snapshot* snapshot = snapshots_.findLast(full + 1, target, record);
   apply(full);
   if (snapshot && scene_.restore(*snapshot)) {
     for (std::size_t i = full + 1; i <= record; ++i)
-      if (log_->hasDrawings(i)) draw(i);
+      if (log()->hasDrawings(i)) draw(i);
     at_ = record;
   }
   if (target > at_) snapshots_.beginSeek(target - at_);
@@ -130,14 +181,14 @@ bool LogPlayer::continueSeek(std::size_t target, std::size_t maxRecords) {
 
 /// Plays the next record, with its events; false at the end of the log.
 bool LogPlayer::step() {
-  if (!log_ || at_ + 1 >= log_->size()) return false;
+  if (!log() || at_ + 1 >= log()->size()) return false;
   apply(at_ + 1);
   sendEvents_ = true;
   return true;
 }
 
 void LogPlayer::setTarget(std::int64_t record) {
-  if (log_) target_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log_->size()) - 1);
+  if (log()) target_ = std::clamp<std::int64_t>(record, 0, static_cast<std::int64_t>(log()->size()) - 1);
 }
 
 /// Moves towards the target, at most kMaxPerFrame records.
@@ -145,7 +196,7 @@ void LogPlayer::seekTarget() {
   if (!target_) return;
   const auto target = static_cast<std::size_t>(*target_);
   // A seek that has begun continues if the new target can be reached from where it is.
-  const bool continues = seeking_ && at_ <= target && at_ >= log_->fullBefore(target);
+  const bool continues = seeking_ && at_ <= target && at_ >= log()->fullBefore(target);
   if (!continues && target == at_ + 1) {
     step();
   } else if (continues || target != at_) {
@@ -161,8 +212,8 @@ void LogPlayer::seekTarget() {
 bool LogPlayer::advance(std::size_t records) {
   bool moved = true;
   if (backward_) {
-    moved = log_ && at_ >= records;
-    if (log_ && at_ > 0) seek(at_ - std::min(at_, records));
+    moved = log() && at_ >= records;
+    if (log() && at_ > 0) seek(at_ - std::min(at_, records));
   } else {
     for (; records > 0 && moved; --records) moved = step();
   }
@@ -201,6 +252,9 @@ bool LogPlayer::command(const Element& command, std::string& why) {
     if (const double v = argument(); why.empty()) speed_ = std::min(v, kMaxSpeed);
   } else if (name == "record") {
     if (const double v = argument(); why.empty()) due_ = 0, setTarget(static_cast<std::int64_t>(std::min(v, 1e9)));
+  } else if (name == "time") {
+    if (const double v = argument(); why.empty())
+      due_ = 0, setTarget(static_cast<std::int64_t>(recordAt(std::min(v, 1e9))));
   } else {
     return false;
   }

@@ -19,8 +19,10 @@ namespace spark {
 /// own last message, so monitors may connect at any time, and the game can be paused, stepped and played backwards.
 ///
 /// Trainer commands, named after the keys of SimSpark's log player: `(p)` pause or continue, `(f)` and `(b)` one record
-/// forward or back, `(l)` reverse the direction, `(speed 2)`, `(record 150)`. Recorded drawings are drawn by the
-/// simulation's IDrawings, if there is one.
+/// forward or back, `(l)` reverse the direction, `(speed 2)`, `(record 150)`, `(time 30)`. Recorded drawings are
+/// drawn by the simulation's IDrawings, if there is one.
+///
+/// A file is text, one message a line, unless a child recognises it (IGameLog).
 ///
 /// A seek far away is split over several frames. Commands only set its target: however many come in a cycle, one seek
 /// follows.
@@ -37,12 +39,15 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   void loadState(StateReader& in) override;
 
  private:
-  std::vector<std::string> commands() const { return {"p", "f", "b", "l", "speed", "record"}; }
+  std::vector<std::string> commands() const { return {"p", "f", "b", "l", "speed", "record", "time"}; }
   std::string file() const { return path_; }
   /// Opens a log and shows the current record of it. Throws Error if it cannot be played.
   void setFile(std::string path);
   std::int64_t record() const { return target_.value_or(static_cast<std::int64_t>(at_)); }
-  std::int64_t records() const { return log_ ? static_cast<std::int64_t>(log_->size()) : 0; }
+  std::int64_t records() const { return log() ? static_cast<std::int64_t>(log()->size()) : 0; }
+  double time() const;
+  void setTime(double seconds);
+  std::size_t recordAt(double seconds) const;
   /// Shows a record at once; a number beyond the end means the last one.
   void setRecord(std::int64_t record);
   void setTarget(std::int64_t record);
@@ -56,11 +61,16 @@ class LogPlayer : public Node, public IFrameSource, public ITrainer {
   void draw(std::size_t record);
   void clearDrawings();
 
+  /// What is played; nullptr: nothing.
+  IGameLog* log() const;
+
   std::string path_;
   double recordTime_ = 0.2, speed_ = 1;
   bool paused_ = false, backward_ = false, waitForMonitor_ = true;
 
-  std::unique_ptr<LogFile> log_;
+  std::unique_ptr<LogFile> text_;  ///< what is played if it is text
+  Ref<Leaf> format_;               ///< the child that reads what is played if it is not
+  Links<IGameLog> formats_;
   RecordedScene scene_{*this};
   std::size_t at_ = 0;  ///< the record that was applied last
   log_player::SnapshotCache snapshots_;

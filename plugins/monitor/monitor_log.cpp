@@ -15,12 +15,17 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
   d.link(&MonitorLog::drawings_, At<IDrawings>());
   d.link(&MonitorLog::tape_, At<IInputTape>()).doc("While it plays a recorded run, the log of that run stays.");
-  d.property("file", &L::file_).doc("The file; its content is replaced. Used when the first record is written.");
+  d.property("file", &L::file_)
+      .ofProcess()
+      .doc("The file; its content is replaced. Used when the first record is written.");
   d.property("interval", &L::interval_)
       .unit("s")
       .min(0)
       .doc("Simulated time between two records, rounded to cycles; at least the server's own interval.");
   d.property("fullInterval", &L::fullInterval_).unit("s").min(0).doc("A record is full if the last full one is older.");
+  d.property("whilePlayed", &L::whilePlayed_)
+      .ofProcess()
+      .doc("It is written although a recorded run is played, to another file than that of the run.");
   d.property("records", &L::records_).readOnly().doc("Number of records written.");
   d.implements<IFrameTaker>();
 }
@@ -53,7 +58,7 @@ bool MonitorLog::open(const NewestFrame& newest) {
 }
 
 void MonitorLog::take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) {
-  if (tape_ && tape_->playing()) return;
+  if (!whilePlayed_ && tape_ && tape_->playing()) return;
   if (event.cycle < nextCycle_ || !encoder || !open(newest)) return;
   const auto every =
       std::max<std::int64_t>(1, event.step > 0 ? std::llround(std::min(interval_ / event.step, 1e9)) : 1);

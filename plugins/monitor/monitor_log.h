@@ -46,7 +46,7 @@ class MonitorLog : public Node, public IFrameTaker {
   std::int64_t nextCycle_ = 0;      ///< no record before this cycle
   std::int64_t records_ = 0;
   double lastFull_ = 0;  ///< s, simulated, of the last full record
-  bool failed_ = false;
+  bool failed_ = false, whilePlayed_ = false;
 };
 
 }  // namespace spark

@@ -12,6 +12,8 @@
 #include "api/phases.h"
 #include "frame_source.h"
 #include "monitor_client.h"
+#include "spark/predicates.h"
+#include "spark/state_stream.h"
 #include "visible_nodes.h"
 
 namespace spark {
@@ -40,11 +42,20 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
 
   void requestFullState() override;
   const MonitorFrame& frame() const override { return newest_.frame; }
+  const NewestFrame& newest() const override { return newest_; }
   std::string command(std::string_view from, std::string_view message) override;
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;
   void disconnected(IConnection& connection) override;
+
+ protected:
+  /// Commands that wait are state; clients are not.
+  void saveState(StateWriter& out) const override { out.write(Value(toList(commands_))); }
+  void loadState(StateReader& in) override {
+    commands_.clear();
+    append(in.readValue().toList(), commands_);
+  }
 
  private:
   void act(const Event& event);

@@ -11,7 +11,7 @@
 namespace spark::recorder {
 
 namespace {
-constexpr int kDigits = 4;  // decimals of lengths [m] and quaternions
+constexpr int kDigits = 3;  // decimals of lengths [m] and quaternions
 
 void writeVector(JsonWriter& json, const char* key, double x, double y, double z) {
   json.key(key).beginObject();
@@ -70,17 +70,18 @@ void writeShape(JsonWriter& json, const ICollider& collider, const engine::Shape
     writeVector(json, "size", s.lengths.x(), s.lengths.y(), s.lengths.z());
   else if (s.shape == Shape::sphere)
     writeVector(json, "size", width, width, width);
-  else if (s.shape != Shape::mesh)
+  else if (!s.mesh)
     writeVector(json, "size", width, width, s.length + (s.shape == Shape::capsule ? width : 0));
   if (s.shape == Shape::cylinder || s.shape == Shape::capsule) json.member("bottom_scale", 1).member("top_scale", 1);
-  if (s.shape == Shape::mesh) {
+  if (s.mesh) {
+    const std::vector<double>& v = s.mesh->vertices;
     json.key("points").beginArray();
-    for (std::size_t i = 0; i + 2 < s.vertices.size(); i += 3) {
-      json.beginObject().key("x").fixed(s.vertices[i], kDigits).key("y").fixed(s.vertices[i + 1], kDigits);
-      json.key("z").fixed(s.vertices[i + 2], kDigits).endObject();
+    for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
+      json.beginObject().key("x").fixed(v[i], kDigits).key("y").fixed(v[i + 1], kDigits);
+      json.key("z").fixed(v[i + 2], kDigits).endObject();
     }
     json.endArray().key("colors").beginArray().endArray().key("indices").beginArray();
-    for (const std::uint32_t index : s.triangles) json.value(index);
+    for (const std::uint32_t index : s.mesh->triangles) json.value(index);
     json.endArray();
   }
   json.endObject();
@@ -138,7 +139,7 @@ std::string Frames::shapes(mcap::Time time) const {
     list("cubes", [](Shape s) { return s == Shape::box; });
     list("spheres", [](Shape s) { return s == Shape::sphere; });
     list("cylinders", [](Shape s) { return s == Shape::cylinder || s == Shape::capsule; });
-    list("triangles", [](Shape s) { return s == Shape::mesh; });
+    list("triangles", [](Shape s) { return s == Shape::mesh || s == Shape::convex; });
     json.endObject();
   }
   json.endArray().endObject();

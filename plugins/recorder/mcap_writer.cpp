@@ -78,10 +78,13 @@ void Writer::message(std::uint16_t channel, Time time, std::string_view data) {
   chunk_ += recordOf(kMessage, Fields().u16(channel).u32(sequences_[channel]++).time(time).time(time).raw(data).bytes);
 }
 
+/// Of compression: higher levels take much more time for few percent.
+constexpr int kLevel = 9;
+
 void Writer::endChunk() {
   if (chunk_.empty()) return;
   std::string compressed(ZSTD_compressBound(chunk_.size()), '\0');
-  const std::size_t size = ZSTD_compress(compressed.data(), compressed.size(), chunk_.data(), chunk_.size(), 3);
+  const std::size_t size = ZSTD_compress(compressed.data(), compressed.size(), chunk_.data(), chunk_.size(), kLevel);
   if (ZSTD_isError(size)) throw Error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
   compressed.resize(size);
   ChunkIndex index{chunkBegin_, chunkEnd_, at_, 0, {}, 0, size, chunk_.size()};

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "api/control.h"
 #include "api/monitor.h"
@@ -50,12 +51,10 @@ void InputPlayer::describe(Description<InputPlayer>& d) {
   d.doc("Plays a recording: passes its inputs on, and compares hashes and states.");
   d.implements<IInputTape>();
   d.link(&InputPlayer::simulation_, At<ISimulation>());
+  d.link(&InputPlayer::snapshots_, At<ISnapshots>());
   d.property("file", &InputPlayer::file_).readOnly().ofProcess().doc("The recording.");
-  d.property("compared", &InputPlayer::compared_)
-      .readOnly()
-      .ofProcess()
-      .unit("1")
-      .doc("Cycles whose hash was compared.");
+  d.property("cycles", &InputPlayer::cycles_).readOnly().ofProcess().unit("1").doc("Cycles that were played.");
+  d.property("compared", &InputPlayer::compared_).readOnly().ofProcess().unit("1").doc("Hashes that were compared.");
   d.property("states", &InputPlayer::states_)
       .readOnly()
       .ofProcess()
@@ -72,6 +71,9 @@ void InputPlayer::describe(Description<InputPlayer>& d) {
       .doc("What differs: the node and the property; empty: nothing, or not known yet.");
   d.property("lacks", &InputPlayer::lacks).ofProcess().doc("What is missing in the recording.");
   d.method("open", &InputPlayer::open).parameters({"file"}).doc("Opens a recording.");
+  d.method("seek", &InputPlayer::seek)
+      .parameters({"time [s]"})
+      .doc("Goes to the newest recorded state that is not later than a simulated time.");
   d.on<&InputPlayer::endCycle>(phase::kPublish);
 }
 
@@ -87,24 +89,86 @@ void InputPlayer::onUnlink() {
   connections_.clear();
 }
 
-std::vector<std::string> InputPlayer::lacks() const { return reader_ ? reader_->lacks() : std::vector<std::string>(); }
+std::vector<std::string> InputPlayer::lacks() const {
+  std::vector<std::string> out = reader_ ? reader_->lacks() : std::vector<std::string>();
+  out.insert(out.end(), holes_.begin(), holes_.end());
+  return out;
+}
 
 void InputPlayer::open(std::string file) {
   reader_ = std::make_unique<mcap::Reader>(file);
   file_ = std::move(file);
-  if (reader_->channelOf(recorder::kInputs) == 0)
+  recorder::channelOf(*reader_, recorder::kStates, recorder::kStatesEncoding);
+  if (recorder::channelOf(*reader_, recorder::kInputs, recorder::kInputsEncoding) == 0)
     throw Error(fmt::format("{} is no recording of Spark: it has no channel {}", file_, recorder::kInputs));
   fill();
   cycle_ = simulation_ ? simulation_->cycle() : 0;
-  if (const auto first = frames_.find(cycle_); first != frames_.end()) compareState(first->second, cycle_);
+  if (frames_.empty()) return;
+  if (StateReader(frames_.begin()->second).readInteger() == cycle_)
+    compareState(frames_.begin()->second);
+  else
+    seek(static_cast<double>(frames_.begin()->first) * 1e-9);  // it began in the middle of a run
+}
+
+mcap::Time InputPlayer::timeNow() const { return recorder::nanoseconds(simulation_ ? simulation_->time() : 0); }
+
+void InputPlayer::seek(double seconds) {
+  if (!snapshots_) throw Error(fmt::format("{}: expected a node {}", path(), ISnapshots::kPath));
+  const auto at = recorder::stateBefore(*reader_, seconds);
+  if (!at) throw Error(fmt::format("{} has no whole state up to {} s", file_, seconds));
+  goTo(*at);
+}
+
+void InputPlayer::goTo(recorder::StateAt at) {
+  hole_ = false;
+  chunk_ = at.chunk;
+  std::string state;
+  inputs_.clear();
+  const std::uint16_t states = reader_->channelOf(recorder::kStates);
+  reader_->forEach(reader_->chunks()[chunk_], [&](const mcap::Message& m) {
+    if (m.channel == states && m.time == at.time) state = m.data;
+    return state.empty();
+  });
+  recorder::addTexts(*reader_, at.time, kernel().sources());
+  const Snapshot snapshot = snapshots_->read(state);
+  snapshots_->restore(snapshot, {});
+  cycle_ = from_ = snapshot.cycle;
+  ++states_;
+  // What came before belongs to earlier cycles.
+  after_ = at.time;
+  hashes_.clear();
+  frames_.clear();
+  readChunk();
+  fill();
+}
+
+/// Goes on from the next state after a damaged chunk; false if there is none.
+bool InputPlayer::skipHole() {
+  const std::uint16_t states = reader_->channelOf(recorder::kStates);
+  std::optional<recorder::StateAt> next;
+  for (std::size_t i = chunk_; i < reader_->chunks().size() && !next; ++i)
+    reader_->forEach(reader_->chunks()[i], [&](const mcap::Message& m) {
+      if (m.channel == states) next = {i, m.time};
+      return !next;
+    });
+  const std::int64_t last = cycle_;
+  if (next && snapshots_) {
+    goTo(*next);
+    holes_.push_back(fmt::format("cycles {} to {}, after which it goes on from a recorded state", last + 1, cycle_));
+    kernel().log().warning("{}: the recording lacks {}", path(), holes_.back());
+    return true;
+  }
+  return false;
 }
 
 /// Reads the next chunk; false if there is none.
 bool InputPlayer::readChunk() {
-  if (!reader_ || chunk_ >= reader_->chunks().size()) return false;
+  if (!reader_ || hole_ || chunk_ >= reader_->chunks().size()) return false;
+  const std::size_t lacked = reader_->lacks().size();
   const std::uint16_t inputs = reader_->channelOf(recorder::kInputs), hashes = reader_->channelOf(recorder::kHashes),
                       states = reader_->channelOf(recorder::kStates);
   reader_->forEach(reader_->chunks()[chunk_++], [&](const mcap::Message& m) {
+    if (m.time <= after_ && m.channel != states) return true;
     if (m.channel == inputs) {
       std::vector<OwnInput> read;
       recorder::readInputs(m.data, read);
@@ -115,10 +179,11 @@ bool InputPlayer::readChunk() {
           j["state"].is_string())
         hashes_[j["cycle"].get<std::int64_t>()] = j["state"].get<std::string>();
     } else if (m.channel == states) {
-      frames_[StateReader(m.data).readInteger()] = m.data;
+      frames_[m.time] = m.data;
     }
     return true;
   });
+  hole_ = reader_->lacks().size() > lacked;
   return true;
 }
 
@@ -152,6 +217,21 @@ void InputPlayer::lost(std::string_view asked) {
 }
 
 void InputPlayer::play() {
+  bool any = passInputs();
+  if (!next() && hole_ && skipHole()) any = passInputs() || any;
+  constexpr int kMostIdlePlays = 100;
+  if (any) idlePlays_ = 0;
+  if (!next()) {
+    if (!frames_.empty()) compareState(frames_.rbegin()->second);  // that of the end
+    frames_.clear();
+    if (simulation_) simulation_->stop();
+  } else if (++idlePlays_ > kMostIdlePlays) {
+    lost("more inputs before the next cycle");
+  }
+}
+
+/// Passes on what comes before the next decision or cycle. False if there is nothing.
+bool InputPlayer::passInputs() {
   bool any = false;
   while (const OwnInput* const in = next()) {
     if (!isPassed(in->kind)) break;
@@ -160,16 +240,12 @@ void InputPlayer::play() {
     pass(input);
     any = true;
   }
-  constexpr int kMostIdlePlays = 100;
-  if (any) idlePlays_ = 0;
-  if (!next()) {
-    if (simulation_) simulation_->stop();
-  } else if (++idlePlays_ > kMostIdlePlays) {
-    lost("more inputs before the next cycle");
-  }
+  return any;
 }
 
+/// Who gets the messages of a port: the port itself, if it takes them, else the node that its property names.
 IConnectionConsumer* InputPlayer::consumerOf(const Leaf& port) const {
+  if (const auto self = port.as<IConnectionConsumer>()) return self.object;
   Leaf* const node = kernel().root().find(getProperty(port, "consumer").plain());
   return node ? node->as<IConnectionConsumer>().object : nullptr;
 }
@@ -183,9 +259,18 @@ void InputPlayer::pass(const OwnInput& input) {
       case Input::Kind::leave: {
         Node& port = kernel().root().require<Node>(input.place);
         auto& connection = connections_[{input.place, input.key}];
-        if (input.kind == Input::Kind::connect) connection = std::make_unique<Connection>(port, input.key, input.text);
-        if (!connection) throw Error(fmt::format("{} of a client that never connected", nameOf(input.kind)));
-        if (auto* const consumer = consumerOf(port)) {
+        auto* const consumer = consumerOf(port);
+        if (input.kind == Input::Kind::connect) {
+          if (connection && consumer) consumer->disconnected(*connection);  // of an earlier run
+          connection = std::make_unique<Connection>(port, input.key, input.text);
+        }
+        if (!connection) {
+          // It connected before the state from which the run goes on.
+          if (from_ == 0) throw Error(fmt::format("{} of a client that never connected", nameOf(input.kind)));
+          connection = std::make_unique<Connection>(port, input.key, fmt::format("client {}", input.key));
+          if (consumer) consumer->connected(*connection);
+        }
+        if (consumer) {
           if (input.kind == Input::Kind::connect) consumer->connected(*connection);
           if (input.kind == Input::Kind::message) consumer->received(*connection, input.text);
           if (input.kind == Input::Kind::leave) consumer->disconnected(*connection);
@@ -210,6 +295,12 @@ void InputPlayer::pass(const OwnInput& input) {
   passing_ = false;
 }
 
+IConnection* InputPlayer::connection(Node& port, std::uint64_t key) {
+  auto& client = connections_[{port.path(), key}];
+  if (!client) client = std::make_unique<Connection>(port, key, fmt::format("client {}", key));
+  return client.get();
+}
+
 bool InputPlayer::put(const Input& input) {
   if (input.kind != Input::Kind::cycle) return passing_;
   idlePlays_ = 0;
@@ -228,7 +319,7 @@ IInputTape::Clock::time_point InputPlayer::time(Clock::time_point live) {
     lost(nameOf(Input::Kind::time));
     return live;
   }
-  const std::chrono::nanoseconds at(in->number);
+  const std::chrono::microseconds at(in->number);
   inputs_.pop_front();
   idlePlays_ = 0;
   return Clock::time_point(std::chrono::duration_cast<Clock::duration>(at));
@@ -249,9 +340,9 @@ void InputPlayer::differs(std::int64_t cycle, std::string what) {
   if (difference_.empty()) difference_ = std::move(what);
 }
 
-void InputPlayer::compareState(std::string_view frame, std::int64_t cycle) {
+void InputPlayer::compareState(std::string_view frame) {
   StateReader in(frame);
-  in.readInteger();
+  const std::int64_t cycle = in.readInteger();
   const auto configuration = static_cast<std::uint64_t>(in.readInteger());
   const std::string state = in.readString();
   ++states_;
@@ -263,14 +354,16 @@ void InputPlayer::compareState(std::string_view frame, std::int64_t cycle) {
 
 void InputPlayer::endCycle(const Event& event) {
   if (lost_) return;  // this cycle lacks its inputs
+  ++cycles_;
   fill();
   if (const auto found = hashes_.find(event.cycle); found != hashes_.end()) {
     ++compared_;
     if (found->second != fmt::format("{:016x}", stateHash(kernel().root()))) differs(event.cycle, {});
   }
-  if (const auto found = frames_.find(event.cycle); found != frames_.end()) compareState(found->second, event.cycle);
+  const mcap::Time now = timeNow();
+  if (const auto found = frames_.find(now); found != frames_.end()) compareState(found->second);
   hashes_.erase(hashes_.begin(), hashes_.upper_bound(event.cycle));
-  frames_.erase(frames_.begin(), frames_.upper_bound(event.cycle));
+  frames_.erase(frames_.begin(), frames_.upper_bound(now));
 }
 
 }  // namespace spark

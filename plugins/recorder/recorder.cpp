@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
+#include "about.h"
 #include "foxglove.h"
 #include "spark/error.h"
 #include "spark/state.h"
@@ -12,7 +12,6 @@
 namespace spark {
 
 namespace {
-mcap::Time nanoseconds(double seconds) { return static_cast<mcap::Time>(std::llround(seconds * 1e9)); }
 constexpr const char* kHashSchema =
     R"({"type":"object","properties":{"cycle":{"type":"integer"},"state":{"type":"string"}}})";
 }  // namespace
@@ -21,6 +20,8 @@ void Recorder::describe(Description<Recorder>& d) {
   d.doc("Records inputs, hashes and states of a run to a file.");
   d.implements<IInputTape>();
   d.link(&Recorder::simulation_, At<ISimulation>());
+  d.link(&Recorder::snapshots_, At<ISnapshots>());
+  d.link(&Recorder::monitor_, At<IMonitorServer>());
   d.property("file", &Recorder::file_).readOnly().ofProcess().doc("The file; empty: nothing is recorded.");
   d.property("every", &Recorder::every_)
       .unit("s")
@@ -30,8 +31,18 @@ void Recorder::describe(Description<Recorder>& d) {
       .unit("s")
       .min(0)
       .doc("Simulated time between two pictures of the scene, for other programs; 0: none.");
+  d.property("frames", &Recorder::framesPerSecond_)
+      .unit("1/s")
+      .min(0)
+      .max(50)
+      .doc("Frames of the match in a simulated second, for the page that plays recordings; 0: none.");
+  d.property("hashEvery", &Recorder::hashEvery_)
+      .unit("cycles")
+      .range(1, 1000000)
+      .doc("Cycles between two hashes of the state: a simulation that differs is noticed after as many at most.");
   d.method("record", &Recorder::record).parameters({"file", "arguments"}).doc("Begins a recording.");
   d.method("finish", &Recorder::finish).doc("Ends the recording.");
+  d.on<&Recorder::beforePublish>(phase::kSense);
   d.on<&Recorder::endCycle>(phase::kPublish);
 }
 
@@ -41,6 +52,7 @@ void Recorder::onUnlink() { finish(); }
 
 void Recorder::record(std::string file, const std::vector<std::string>& arguments) {
   if (recording_) throw Error(fmt::format("{} records to {} already", path(), file_));
+  if (!snapshots_) kernel().create("Snapshots", ISnapshots::kPath);
   recording_ = std::make_unique<recorder::Recording>(file, "Spark");
   file_ = std::move(file);
   inputs_.take();
@@ -56,16 +68,17 @@ void Recorder::record(std::string file, const std::vector<std::string>& argument
     shapeChannel_ = recording_->channel({0, "/scene", "json"}, recorder::shapesSchema());
     placeChannel_ = recording_->channel({0, "/tf", "json"}, recorder::placesSchema());
   }
-  recording_->metadata("spark", {{"arguments", nlohmann::json(arguments).dump()},
-                                 {"seed", std::to_string(kernel().seed())},
-                                 {"configurationHash", fmt::format("{:016x}", configurationHash(kernel().root()))}});
+  if (monitor_ && framesPerSecond_ > 0)
+    match_ = std::make_unique<recorder::MatchChannels>(*recording_, framesPerSecond_);
+  recording_->metadata("spark", recorder::about(kernel(), arguments));
   const double now = simulation_ ? simulation_->time() : 0;
-  lastTime_ = nanoseconds(now);
+  lastTime_ = recorder::nanoseconds(now);
   attachNewTexts(lastTime_);
-  keyFrame(lastTime_, simulation_ ? simulation_->cycle() : 0);
+  keyFrame(lastTime_);
   nextKeyFrame_ = now + every_;
   nextPicture_ = now;
   drawFrame(lastTime_);
+  recording_->flush();  // whenever the program is killed, the file has the beginning
   logSink_ = kernel().log().addSink(Level::info, [this](Level level, std::string_view line) { note(level, line); });
 }
 
@@ -80,7 +93,12 @@ void Recorder::note(Level level, std::string_view line) {
 void Recorder::finish() {
   if (!recording_) return;
   kernel().log().removeSink(logSink_);
-  if (std::string rest = inputs_.take(); !rest.empty()) recording_->message(inputChannel_, lastTime_, std::move(rest));
+  // What came after the last cycle, and the end: a state with that.
+  mcap::Time end = lastTime_;
+  if (std::string rest = inputs_.take(); !rest.empty()) recording_->message(inputChannel_, ++end, std::move(rest));
+  if (!kernel().isEnding() && simulation_ && (end > lastTime_ || simulation_->cycle() != state_.cycle)) keyFrame(end);
+  if (match_) match_->finish(end);
+  match_.reset();
   recording_.reset();
   frames_.reset();
   file_.clear();
@@ -92,9 +110,10 @@ bool Recorder::put(const Input& input) {
 }
 
 IInputTape::Clock::time_point Recorder::time(Clock::time_point live) {
-  using std::chrono::nanoseconds;
-  put({.kind = Input::Kind::time, .number = std::chrono::duration_cast<nanoseconds>(live.time_since_epoch()).count()});
-  return live;
+  using std::chrono::microseconds;
+  const auto at = std::chrono::floor<microseconds>(live);  // what is below would be a quarter of the bytes
+  put({.kind = Input::Kind::time, .number = at.time_since_epoch().count()});
+  return at;
 }
 
 bool Recorder::decide(std::string_view what, std::uint64_t key, bool live, bool usual) {
@@ -106,16 +125,18 @@ void Recorder::endCycle(const Event& event) {
   if (!recording_) return;
   // All that came in this cycle is known now; time is that of its end.
   const double end = simulation_ ? simulation_->time() : event.time;
-  lastTime_ = nanoseconds(end);
+  lastTime_ = recorder::nanoseconds(end);
   attachNewTexts(lastTime_);
   recording_->message(inputChannel_, lastTime_, inputs_.take());
-  recording_->message(hashChannel_, lastTime_,
-                      fmt::format("{{\"cycle\":{},\"state\":\"{:016x}\"}}", event.cycle, stateHash(kernel().root())));
+  if (event.cycle % hashEvery_ == 0)
+    recording_->message(hashChannel_, lastTime_,
+                        fmt::format("{{\"cycle\":{},\"state\":\"{:016x}\"}}", event.cycle, stateHash(kernel().root())));
   if (end >= nextKeyFrame_ - 1e-9) {
-    keyFrame(lastTime_, event.cycle);
+    keyFrame(lastTime_);
     nextKeyFrame_ += every_;
   }
   drawFrame(lastTime_);
+  if (match_ && monitor_) match_->take(*monitor_, event.cycle, end, structure_ == kernel().structureVersion());
   if (failed_) return;
   if (const std::string why = recording_->failure(); !why.empty()) {
     failed_ = true;
@@ -123,14 +144,9 @@ void Recorder::endCycle(const Event& event) {
   }
 }
 
-void Recorder::keyFrame(mcap::Time time, std::int64_t cycle) {
-  StateWriter state(true);
-  saveTree(kernel().root(), state);
-  StateWriter frame(true);
-  frame.write(cycle);
-  frame.write(configurationHash(kernel().root()));
-  frame.write(state.bytes());
-  recording_->message(stateChannel_, time, frame.bytes());
+void Recorder::keyFrame(mcap::Time time) {
+  snapshots_->take(state_);
+  recording_->message(stateChannel_, time, snapshots_->write(state_));
 }
 
 void Recorder::drawFrame(mcap::Time time) {
@@ -146,7 +162,7 @@ void Recorder::attachNewTexts(mcap::Time time) {
   if (sources.all().size() == attached_.size()) return;
   for (const Sources::Source& s : sources.all())
     if (const std::string* text = sources.text(s.hash); attached_.insert(s).second && text)
-      recording_->attachment(time, s.kind + ":" + s.name, "application/octet-stream", *text);
+      recording_->attachment(time, recorder::attachmentName(s), std::string(recorder::kAttachmentType), *text);
 }
 
 }  // namespace spark

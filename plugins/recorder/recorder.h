@@ -9,8 +9,10 @@
 
 #include "api/inputs.h"
 #include "api/phases.h"
+#include "api/snapshots.h"
 #include "frames.h"
 #include "input_codec.h"
+#include "match_channels.h"
 #include "recording.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
@@ -18,7 +20,7 @@
 
 namespace spark {
 
-/// Writes the tape of a run to a file: inputs, a hash in each cycle, the whole state from time to time, and the texts
+/// Writes the tape of a run to a file: inputs, hashes of the state, the whole state from time to time, and the texts
 /// that the run was made of. At /sys/host/tape. It has no state, and nothing in the simulation depends on it.
 class Recorder : public Node, public IInputTape {
   SPARK_CLASS(Recorder, Node)
@@ -41,8 +43,9 @@ class Recorder : public Node, public IInputTape {
   void onUnlink() override;
 
  private:
+  void beforePublish(const Event&) { structure_ = kernel().structureVersion(); }
   void endCycle(const Event& event);
-  void keyFrame(mcap::Time time, std::int64_t cycle);
+  void keyFrame(mcap::Time time);
   void attachNewTexts(mcap::Time time);
   void drawFrame(mcap::Time time);
   void note(Level level, std::string_view line);
@@ -55,12 +58,19 @@ class Recorder : public Node, public IInputTape {
   std::set<Sources::Source> attached_;  ///< texts that are in the recording, or are not to be had
   std::string file_;
   std::unique_ptr<recorder::Frames> frames_;
-  double every_ = 10, picture_ = 0.2;  ///< s between key frames, and between places of shapes
+  std::unique_ptr<recorder::MatchChannels> match_;
+  std::uint64_t structure_ = 0;        ///< version of the tree before the frame of the monitor server was made
+  double every_ = 10, picture_ = 0.5;  ///< s between key frames, and between places of shapes
+  double framesPerSecond_ = 12.5;      ///< of the match as browsers show it
+  int hashEvery_ = 5;
   double nextPicture_ = 0;
   double nextKeyFrame_ = 0;
   std::atomic<mcap::Time> lastTime_ = 0;  ///< the log may be written by any thread
   bool failed_ = false;
+  Snapshot state_;  ///< the last one that was written whole
   Link<ISimulation> simulation_;
+  Link<ISnapshots> snapshots_;
+  Link<IMonitorServer> monitor_;
 };
 
 }  // namespace spark

@@ -14,6 +14,8 @@ namespace spark::recorder {
 
 namespace {
 constexpr std::size_t kChunkBytes = 4u << 20;
+// A chunk of its own, so that a page need not decompress states when it shows what is beside them.
+constexpr std::size_t kLargeMessage = 512u << 10;
 constexpr mcap::Time kChunkTime = 1'000'000'000;             // ns
 constexpr auto kChunkWall = std::chrono::milliseconds(500);  // of real time
 }  // namespace
@@ -55,6 +57,12 @@ void Recording::message(std::uint16_t channel, mcap::Time time, std::string data
   queue(std::move(item));
 }
 
+void Recording::later(std::size_t bytes, std::function<void(const Put& put)> encode) {
+  Item item{Item::Kind::encode};
+  item.extra = bytes, item.encode = std::move(encode);
+  queue(std::move(item));
+}
+
 void Recording::attachment(mcap::Time time, std::string name, std::string mediaType, std::string data) {
   Item item{Item::Kind::attachment};
   item.time = time, item.name = std::move(name), item.type = std::move(mediaType), item.data = std::move(data);
@@ -65,6 +73,16 @@ void Recording::metadata(std::string name, std::map<std::string, std::string> va
   Item item{Item::Kind::metadata};
   item.name = std::move(name), item.values = std::move(values);
   queue(std::move(item));
+}
+
+void Recording::flush() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++toFlush_;
+  }
+  queue(Item{Item::Kind::flush});
+  std::unique_lock lock(mutex_);
+  flushed_.wait(lock, [this] { return toFlush_ == 0 || !failure_.empty(); });
 }
 
 void Recording::queue(Item item) {
@@ -90,6 +108,13 @@ void Recording::put(std::string_view bytes) const {
   }
 }
 
+void Recording::add(mcap::Writer& writer, std::uint16_t channel, mcap::Time time, std::string_view data) {
+  const bool large = data.size() >= kLargeMessage;
+  if (large || (writer.chunkBytes() > 0 && time - writer.chunkBegin() >= kChunkTime)) writer.endChunk();
+  writer.message(channel, time, data);
+  if (large || writer.chunkBytes() >= kChunkBytes) writer.endChunk();
+}
+
 void Recording::write(mcap::Writer& writer, const Item& item) {
   switch (item.kind) {
     case Item::Kind::channel: {
@@ -98,14 +123,19 @@ void Recording::write(mcap::Writer& writer, const Item& item) {
       return;
     }
     case Item::Kind::message:
-      if (writer.chunkBytes() > 0 && item.time - writer.chunkBegin() >= kChunkTime) writer.endChunk();
-      writer.message(item.number, item.time, item.data);
-      if (writer.chunkBytes() >= kChunkBytes) writer.endChunk();
-      return;
+      return add(writer, item.number, item.time, item.data);
+    case Item::Kind::encode:
+      return item.encode([&writer](auto... message) { add(writer, message...); });
     case Item::Kind::attachment:
       return writer.attachment(item.time, item.name, item.type, item.data);
     case Item::Kind::metadata:
       return writer.metadata(item.name, item.values);
+    case Item::Kind::flush: {
+      writer.endChunk();
+      const std::lock_guard lock(mutex_);
+      --toFlush_;
+      return flushed_.notify_all();
+    }
   }
 }
 
@@ -140,6 +170,7 @@ void Recording::work() {
     const std::lock_guard lock(mutex_);
     failure_ = e.what();
     items_.clear();
+    flushed_.notify_all();
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -28,31 +29,44 @@ class Recording {
   /// Adds a channel; its number. Before the first message.
   std::uint16_t channel(mcap::Channel channel, mcap::Schema schema = {});
   void message(std::uint16_t channel, mcap::Time time, std::string data);
+  /// Adds a message, in the thread that writes.
+  using Put = std::function<void(std::uint16_t channel, mcap::Time time, std::string_view data)>;
+  /// Calls `encode` in the thread that writes, after all that was queued before. It adds messages. `bytes`: memory that
+  /// it needs until then.
+  void later(std::size_t bytes, std::function<void(const Put& put)> encode);
   void attachment(mcap::Time time, std::string name, std::string mediaType, std::string data);
   void metadata(std::string name, std::map<std::string, std::string> values);
+  /// Waits until all so far is in the file, or the recording has failed.
+  void flush();
   /// Why the recording has ended; "" while it goes on.
   std::string failure() const;
 
  private:
   struct Item {
-    enum class Kind { channel, message, attachment, metadata } kind;
+    enum class Kind { channel, message, attachment, metadata, encode, flush } kind;
     std::uint16_t number = 0;
     mcap::Time time = 0;
     std::string name, type, data;
     mcap::Schema schema;
     std::map<std::string, std::string> values;
-    std::size_t bytes() const { return sizeof *this + name.size() + type.size() + data.size() + schema.data.size(); }
+    std::function<void(const Put& put)> encode;
+    std::size_t extra = 0;
+    std::size_t bytes() const {
+      return sizeof *this + extra + name.size() + type.size() + data.size() + schema.data.size();
+    }
   };
   void queue(Item item);
   void work();
   void write(mcap::Writer& writer, const Item& item);
+  static void add(mcap::Writer& writer, std::uint16_t channel, mcap::Time time, std::string_view data);
   void put(std::string_view bytes) const;
 
   std::string file_, library_;
   int fd_ = -1;
   std::uint16_t channels_ = 0, schemas_ = 0;
   mutable std::mutex mutex_;
-  std::condition_variable wake_;
+  std::condition_variable wake_, flushed_;
+  int toFlush_ = 0;  ///< calls of flush() that wait
   std::vector<Item> items_;
   const std::size_t maxQueued_;
   std::size_t queued_ = 0;  ///< bytes

@@ -214,6 +214,7 @@ void Simulation::waitForClock() {
     due_ = Clock::now();
     if (paced()) lostTime_ += late, ++lateCycles_;
   }
+  if (!paced()) due_ = Clock::now();  // simulated time runs ahead; when it is paced again it goes on at once
   due_ += std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(step_));
 }
 

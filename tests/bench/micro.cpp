@@ -10,6 +10,7 @@ void runMicro(bool json) {
   registerJobs();
   registerBytes();
   registerRays();
+  registerSnapshots();
   std::string program = "sparkbench", format = json ? "--benchmark_format=json" : "--benchmark_format=console";
   char* arguments[] = {program.data(), format.data(), nullptr};
   int count = 2;

@@ -11,6 +11,8 @@ void runMicro(bool json);
 void registerJobs();
 /// Registers the cost of the rays of 22 humanoids.
 void registerRays();
+/// Registers the cost of saving and restoring the state.
+void registerSnapshots();
 /// Registers the cost of messages: writing percepts and monitor frames, reading actions.
 void registerBytes();
 

@@ -1,4 +1,4 @@
-// Recordings: MCAP files, and the inputs in them.
+// Recordings: MCAP files, and the inputs and frames in them.
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "../../plugins/monitor-web/stream/frame_decoder.h"
 #include "../../plugins/recorder/input_codec.h"
 #include "../../plugins/recorder/mcap.h"
 #include "spark/error.h"
@@ -21,6 +22,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         std::vector<spark::recorder::OwnInput> out;
         try {
           spark::recorder::readInputs(m.data, out);
+        } catch (const spark::Error&) {
+        }
+        try {
+          spark::web::FrameDecoder decoder;
+          decoder.begin(8, std::vector<std::uint8_t>(8));
+          spark::web::PieceMessage::read(m.data).forEach([&](bool isFrame, std::string_view bytes) {
+            if (isFrame) decoder.take(bytes);
+          });
         } catch (const spark::Error&) {
         }
         return true;

@@ -112,11 +112,18 @@ void inputRobots(World& w, int cycle) {
 // ---- sphere robots ----
 
 void makeSpheres(World& w) {
-  w.configure("soccer-sphere.lua", {});
+  w.configure("soccer-sphere.lua", {{"/sys/server/gamecontrol.requests", true}, {"/sys/server/monitor.interval", 3}});
   for (int n = 1; n <= 3; ++n) w.join("A", n, "rsg/agent/sphere.rsg"), w.join("B", n, "rsg/agent/sphere.rsg");
 }
 
 void inputSpheres(World& w, int cycle) {
+  // A granted request, whose answer is not sent for long.
+  if (cycle == 3)
+    setProperty(w.kernel.root().require<Leaf>("/usr/scene/AgentAspect1/_RequestAnswers"), "interval", 1000);
+  // A command that waits while the state is saved.
+  if (cycle == 50)
+    callMethod(w.kernel.root().require<Leaf>("/sys/server/monitor"), "command", std::vector<Value>{ball(1, 1)});
+  if (cycle == 5) w.player(0).next = "(request (perceptor TimePerceptor) (name clock))";
   if (cycle == 1) w.trainer("(playMode PlayOn)" + ball(0.5, 0));
   if (cycle % 50 == 18) w.trainer(put("Left", 1, 0, 0, 0.22) + "(ball (pos 0.34 0 0.111)(vel 0 0 0))");
   if (cycle % 50 == 20) w.player(0).next = "(kick 20 60)";

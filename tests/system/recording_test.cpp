@@ -1,12 +1,18 @@
 // Recordings: sparkhost --record, and sparkreplay --verify, which simulates the same run again.
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <thread>
 
+#include "../../plugins/monitor-web/tests/piece_reader.h"
 #include "client.h"
+#include "input_codec.h"
 #include "mcap.h"
 #include "process.h"
 #include "temporary_folder.h"
@@ -68,7 +74,7 @@ TEST_CASE("A match in lockstep is simulated again from its recording, to the las
   const auto [line, code] = verify(match.file);
   CHECK(code == 0);
   CHECK(line["cycles"] == 1250);
-  CHECK(line["states"] == 3);  // at the start, after 10 and 20 s
+  CHECK(line["states"] == 4);  // at the start, after 10 and 20 s, at the end
   CHECK(line["differs"].is_null());
   CHECK(line["lacks"].empty());
   const Json about = Json::parse(runToEnd({program("sparkreplay"), match.file}).out);
@@ -107,6 +113,56 @@ TEST_CASE("With MuJoCo in real time a model takes over when it did, in the recor
   CHECK(line["differs"].is_null());
 }
 
+TEST_CASE("A recording shows browsers the poses of the simulation") {
+  using namespace spark;
+  Recorded match(
+      "soccer-sphere.lua", "sphere-team", 2,
+      joined(joined(kLockstep, withoutLimits()), {"--duration", "10", "--set", "Soccer.AutomaticKickOff=true"}));
+  match.end();
+  mcap::Reader reader(match.file);
+  // Where the ball is, in /tf and in the pieces, by milliseconds.
+  std::map<std::int64_t, double> expected, found;
+  struct Scene {
+    std::size_t transforms = 0, ball = 0;
+  };
+  std::map<std::uint32_t, Scene> scenes;
+  for (const auto& chunk : reader.chunks())
+    reader.forEach(chunk, [&](const mcap::Message& m) {
+      if (m.channel == reader.channelOf("/tf")) {
+        const Json places = Json::parse(m.data);
+        for (const Json& t : places["transforms"])
+          if (t["child_frame_id"] == "/usr/scene/Ball") expected[m.time / 1'000'000] = t["translation"]["x"];
+      }
+      if (m.channel == reader.channelOf("/monitor/scenes")) {
+        const web::test::ReadPiece message(m.data);
+        Scene& scene = scenes[message.shape];
+        const Json described = Json::parse(message.texts.at(0));
+        for (const Json& node : described["nodes"]) {
+          if (node["kind"] != "transform") continue;
+          if (node["path"] == "/usr/scene/Ball") scene.ball = scene.transforms;
+          ++scene.transforms;
+        }
+      }
+      if (m.channel != reader.channelOf("/monitor")) return true;
+      const web::test::ReadPiece piece(m.data);
+      const Scene& scene = scenes.at(piece.shape);
+      web::test::FrameReader frames(scene.transforms);
+      for (const std::string& frame : piece.frames) {
+        frames.take(frame);
+        found[std::llround(frames.time * 1000)] =
+            std::ldexp(static_cast<double>(frames.quantised.at(scene.ball)[0]), -frames.positionBits);
+      }
+      return true;
+    });
+  int compared = 0;
+  for (const auto& [time, x] : expected)
+    if (const auto at = found.find(time); at != found.end()) {
+      CHECK(at->second == Approx(x).margin(0.002));
+      ++compared;
+    }
+  CHECK(compared >= 4);
+}
+
 TEST_CASE("A host that was killed leaves a recording that can be simulated up to its last chunk") {
   Recorded match("soccer-sphere.lua", "sphere-team", 2, {"--rate", "max", "--sync", "--duration", "100000"});
   while (std::filesystem::file_size(match.file) < 200'000) match.until(100);
@@ -120,22 +176,98 @@ TEST_CASE("A host that was killed leaves a recording that can be simulated up to
   CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("the recording was cut off"));
 }
 
-TEST_CASE("A recording with a damaged chunk is simulated up to the damage, which is named") {
+TEST_CASE("A host may be killed at any instant: each file opens, says what is missing, and is simulated again") {
+  std::mt19937 random(5);
+  for (int i = 0; i < 20; ++i) {
+    TemporaryFolder folder;
+    const std::string file = folder.path() / "run.mcap";
+    Process running({program("sparkhost"), "--config", "soccer-sphere.lua", "--set", "team=Red Blue", "--set",
+                     "players=2", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--web-port", "0",
+                     "--log-level", "error", "--record", file});
+    running.line();
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1'000'000));
+    running.signal(SIGKILL);
+    CHECK(running.wait() == 128 + SIGKILL);
+    const auto [line, code] = verify(file);
+    INFO(line.dump());
+    CHECK(code == 0);
+    CHECK(line["states"] > 0);
+    CHECK(line["differs"].is_null());
+    REQUIRE(line["lacks"].size() == 1);
+    CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("the recording was cut off"));
+    const Finished on = runToEnd({program("sparkhost"), "--from", file, "--duration", "0.02", "--web-port", "0",
+                                  "--agent-port", "0", "--monitor-port", "0", "--log-level", "error"});
+    CHECK(on.code == 0);
+  }
+}
+
+TEST_CASE("A recording with a damaged chunk is simulated up to the damage, and on from the next state") {
   Recorded match("soccer-sphere.lua", "sphere-team", 2,
-                 joined(joined(kLockstep, withoutLimits()), {"--duration", "20"}));
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "25"}));
   match.end();
   std::string bytes = textOf(match.file);
-  const auto chunk = spark::mcap::Reader(match.file).chunks().at(10);
+  const auto chunks = spark::mcap::Reader(match.file).chunks();
+  const auto chunk = chunks.at(chunks.size() / 3);
   for (std::size_t i = 0; i < 50; ++i) bytes[chunk.offset + chunk.length / 2 + i] ^= 0x55;
   std::ofstream(match.file, std::ios::binary) << bytes;
   const auto [line, code] = verify(match.file);
   CHECK(code == 0);
-  const double before = static_cast<double>(chunk.begin) * 50e-9;  // cycles
-  CHECK(before > 1);
-  CHECK(std::abs(line["cycles"].get<double>() - before) < 2.5);
+  const double lost = static_cast<double>(chunk.begin) * 50e-9;  // the cycle at which it begins
+  const double next = 500 * std::ceil(lost / 500);               // that of the next state
+  CHECK(std::abs(line["cycles"].get<double>() - (1250 - (next - lost))) < 2.5);
   CHECK(line["differs"].is_null());
-  REQUIRE(line["lacks"].size() == 1);
+  REQUIRE(line["lacks"].size() == 2);
   CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("s is damaged: "));
+  CHECK_THAT(line["lacks"][1].get<std::string>(), Contains(fmt::format("to {:.0f}, after which it goes on", next)));
+}
+
+TEST_CASE("One changed byte of an input is found: the cycle, and by the next state node and property") {
+  using namespace spark;
+  Recorded match("soccer-sphere.lua", "sphere-team", 2,
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "15"}));
+  match.end();
+  // The same file, but for one digit of an agent's message.
+  mcap::Reader from(match.file);
+  std::string bytes;
+  std::int64_t changedAt = 0;
+  {
+    mcap::Writer to([&bytes](std::string_view more) { bytes += more; }, "test");
+    for (const auto& [number, schema] : from.schemas()) to.schema(schema);
+    for (const auto& [number, channel] : from.channels()) to.channel(channel);
+    to.metadata("spark", from.metadataOf("spark"));
+    for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
+    for (const auto& chunk : from.chunks())
+      from.forEach(chunk, [&](const mcap::Message& m) {
+        std::string data(m.data);
+        if (m.channel == from.channelOf(recorder::kInputs) && m.time > 6'000'000'000 && changedAt == 0) {
+          std::vector<recorder::OwnInput> inputs;
+          recorder::readInputs(m.data, inputs);
+          for (auto i = inputs.begin(); i != inputs.end() && changedAt == 0; ++i) {
+            const std::size_t drive = i->kind == Input::Kind::message ? i->text.find("(drive ") : std::string::npos;
+            if (drive == std::string::npos) continue;
+            char& digit = i->text[i->text.find_first_of("123456789", drive)];
+            digit = digit == '1' ? '2' : '1';
+            changedAt =
+                std::find_if(i, inputs.end(), [](const auto& in) { return in.kind == Input::Kind::cycle; })->number;
+          }
+          recorder::InputWriter writer;
+          for (const auto& i : inputs) writer.add({i.kind, i.place, i.key, i.number, i.text});
+          data = writer.take();
+        }
+        to.message(m.channel, m.time, data);
+        return true;
+      });
+    to.finish();
+  }
+  REQUIRE(changedAt > 300);
+  std::ofstream(match.file, std::ios::binary) << bytes;
+  const auto [line, code] = verify(match.file);
+  INFO(line.dump());
+  CHECK(code == 1);
+  const auto cycle = line["differs"]["cycle"].get<std::int64_t>();
+  CHECK(cycle >= changedAt);
+  CHECK(cycle <= changedAt + 10);
+  CHECK_THAT(line["differs"]["what"].get<std::string>(), Contains("/"));
 }
 
 TEST_CASE("A disk that is full ends the recording, not the run") {
@@ -241,4 +373,108 @@ TEST_CASE("What is no recording, and what cannot be written, is refused") {
       runToEnd({program("sparkhost"), "--config", "boxes.lua", "--record", folder.path() / "no" / "x.mcap"});
   CHECK(f.code == 2);
   CHECK_THAT(f.errors, Contains("cannot write the recording"));
+}
+
+namespace {
+/// sparkreplay that plays a file and stands still.
+struct Replay {
+  std::unique_ptr<Process> process;
+  unsigned short port = 0;
+  explicit Replay(std::vector<std::string> command) : process(std::make_unique<Process>(std::move(command))) {
+    port = static_cast<unsigned short>(Json::parse(process->line())["monitorPort"].get<int>());
+  }
+  /// What a monitor gets that connects when it shows a time: words and numbers. Another time than before.
+  std::vector<std::string> at(double seconds) {
+    const Finished set = runToEnd(
+        joined(sparkctl(process->pid()), {"set", "/sys/server/monitor/player.time", fmt::format("{}", seconds)}));
+    REQUIRE(set.code == 0);
+    // A frame may be under way that was made before.
+    for (;;) {
+      std::vector<std::string> words = split(Client(port).receive());
+      const auto time = std::find(words.begin(), words.end(), "time");
+      REQUIRE(time + 1 < words.end());
+      if (std::exchange(shown, time[1]) != time[1]) return words;
+    }
+  }
+  static std::vector<std::string> split(const std::string& message) {
+    std::vector<std::string> out(1);
+    for (const char c : message) {
+      const bool bracket = c == '(' || c == ')';
+      if ((bracket || c == ' ') && !out.back().empty()) out.emplace_back();
+      if (bracket) out.back() = c, out.emplace_back();
+      if (!bracket && c != ' ') out.back() += c;
+    }
+    return out;
+  }
+  std::string shown = "0";  ///< time in the game that it showed last
+};
+
+/// The first word that differs; numbers may by a few quanta of the recording.
+std::string firstDifference(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    if (a[i] == b[i]) continue;
+    char *endA = nullptr, *endB = nullptr;
+    const double x = std::strtod(a[i].c_str(), &endA), y = std::strtod(b[i].c_str(), &endB);
+    if (*endA != 0 || *endB != 0 || std::abs(x - y) > 0.006)
+      return fmt::format("{} {} {} against {} at {}", a[i - (i > 0)], a[i], i + 1 < a.size() ? a[i + 1] : "", b[i], i);
+  }
+  return a.size() == b.size() ? "" : fmt::format("{} words against {}", a.size(), b.size());
+}
+}  // namespace
+
+TEST_CASE("A recording plays to monitors as the monitor log of the same match does, at any time") {
+  Recorded match("soccer.lua", "humanoid-team", 1,
+                 joined(kLockstep, {"--duration", "8", "--set", "Soccer.AutomaticKickOff=true", "--set",
+                                    "Soccer.WaitBeforeKickOff=1"}));
+  match.end();
+  const std::string log = match.folder.path() / "match.log";
+  REQUIRE(runToEnd({program("sparkreplay"), match.file, "--export", log}).code == 0);
+  Replay recording({program("sparkreplay"), match.file, "--play", "--speed", "0", "--monitor-port", "0", "--web-port",
+                    "0", "--log-level", "error"});
+  Replay text({program("sparkhost"), "--config", "logplayer.lua", "--set", "file=" + log, "--set", "speed=0",
+               "--monitor-port", "0", "--web-port", "0", "--log-level", "error"});
+  // The log has a record each 0.2 s from 0.04 s on, the recording a frame each 0.08 s.
+  const double first = 0.04;
+  for (const double t : {4.24, 0.64, 6.24}) {
+    INFO("at " << t << " s");
+    CHECK(firstDifference(recording.at(t), text.at(t - first)) == "");
+  }
+}
+
+TEST_CASE("A recording plays forwards and backwards, and begins where it is told") {
+  Recorded match("soccer-sphere.lua", "sphere-team", 1,
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "6"}));
+  match.end();
+  const auto timesFrom = [&](const std::vector<std::string>& arguments) {
+    Replay player(joined({program("sparkreplay"), match.file, "--play", "--monitor-port", "0", "--web-port", "0",
+                          "--log-level", "error"},
+                         arguments));
+    std::vector<double> out;
+    Client monitor(player.port);
+    while (out.size() < 4) {
+      monitor.receive();
+      const Finished time =
+          runToEnd(joined(sparkctl(player.process->pid()), {"get", "/sys/server/monitor/player.time"}));
+      const double t = std::stod(time.out.substr(time.out.find("= ") + 2));
+      if (out.empty() || t != out.back()) out.push_back(t);
+    }
+    return out;
+  };
+  // So slowly that a busy machine does not miss all of it.
+  const auto forwards = timesFrom({"--from", "2", "--speed", "0.1"}), backwards = timesFrom({"--speed", "-0.1"});
+  CHECK(std::is_sorted(forwards.begin(), forwards.end()));
+  CHECK(forwards.front() >= 1.9);
+  CHECK(std::is_sorted(backwards.rbegin(), backwards.rend()));
+  CHECK(backwards.front() > 3);
+}
+
+TEST_CASE("A recording without frames is not played") {
+  TemporaryFolder folder;
+  const std::string file = folder.path() / "boxes.mcap";
+  REQUIRE(runToEnd({program("sparkhost"), "--config", "boxes.lua", "--rate", "max", "--duration", "1", "--set",
+                    "web=false", "--log-level", "error", "--record", file})
+              .code == 0);
+  const Finished played = runToEnd({program("sparkreplay"), file, "--play", "--monitor-port", "0", "--web-port", "0"});
+  CHECK(played.code == 2);
+  CHECK_THAT(played.errors, Contains("has no frames to show"));
 }

@@ -309,3 +309,13 @@ TEST_CASE("Streams that are seeded after loading are those that would have been 
   CHECK(fresh(other).bits() == fresh(core).bits());
   CHECK(stateHash(other.kernel.root()) == stateHash(core.kernel.root()));
 }
+
+TEST_CASE("Saved state with too many lists in each other is refused") {
+  StateWriter out(true);
+  for (int i = 0; i < 100000; ++i) out.write(std::int64_t{5}), out.write(std::int64_t{1});  // a list of one list
+  out.write(std::int64_t{0});
+  StateReader in(out.bytes());
+  REQUIRE_THROWS_WITH(in.readValue(), Catch::Contains("more than 1000 lists in each other"));
+  StateReader again(out.bytes());
+  REQUIRE_THROWS(again.readValue());
+}

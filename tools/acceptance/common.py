@@ -1,4 +1,5 @@
 """Shared code of all milestones: running programs and tests."""
+import os
 import re
 import subprocess
 import sys
@@ -39,11 +40,11 @@ def last_check(*modes):
     return mode, (REPORTS / f"summary-{mode}").read_text().strip(), stages
 
 
-def tests(*patterns):
+def tests(*patterns, environment=None):
     """Runs the ctest programs of the release build whose names match; each pattern must match one."""
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
         say("Testing " + ", ".join(patterns))
-        subprocess.run(["ctest", "--preset", "release", "-R", "^(" + "|".join(patterns) + ")$", "--output-junit", report.name], cwd=ROOT, stdout=sys.stderr)
+        subprocess.run(["ctest", "--preset", "release", "-R", "^(" + "|".join(patterns) + ")$", "--output-junit", report.name], cwd=ROOT, stdout=sys.stderr, env={**os.environ, **(environment or {})})
         cases = list(xml.parse(report.name).getroot().iter("testcase"))
     names = [c.get("name") for c in cases]
     skipped = [c.get("name") for c in cases if c.find("skipped") is not None]

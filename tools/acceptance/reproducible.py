@@ -2,11 +2,13 @@
 import contextlib
 import itertools
 import json
+import os
 import re
 import socket
 import subprocess
 import tempfile
 import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -98,7 +100,7 @@ def watching(bin, way, first):
         yield
 
 
-def play(league, solver, way, seconds, players=11):
+def play(league, solver, way, seconds, players=11, record=None):
     """Plays a match of two teams over TCP in lockstep. Returns its result and the lines of its hashes: cycle, state, configuration."""
     bin = ROOT / "build" / way.build / "bin"
     with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
@@ -113,7 +115,7 @@ def play(league, solver, way, seconds, players=11):
         host = subprocess.Popen(
             [bin / "sparkhost", "--config", config, "--seed", "7", "--rate", "max", "--sync", "--expect", str(2 * players), "--duration", str(seconds),
              "--agent-port", "0", "--monitor-port", "0", "--web-port", "0", "--log-level", "error", "--set", f"/sys/server/simulation.threads={way.threads}",
-             "--hashes", hashes, "--hash-every", str(EVERY), *SOLVERS[solver], *league.arguments], stdout=subprocess.PIPE, text=True)
+             "--hashes", hashes, "--hash-every", str(EVERY), *SOLVERS[solver], *league.arguments, *(["--record", record] if record else [])], stdout=subprocess.PIPE, text=True)
         stack.callback(host.wait)
         stack.callback(host.kill)
         first = json.loads(host.stdout.readline())
@@ -167,10 +169,64 @@ def matches(solver):
     return "; ".join(measured for measured, _ in judged), FAIL if any(verdict == FAIL for _, verdict in judged) else PASS
 
 
+def in_middle(league, seconds=90):
+    """A recorded 11 v 11 over TCP goes on from states in its middle; cost and size of the recording."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "match.mcap"
+        say(f"{league.config}: {seconds} s recorded")
+        result, _ = play(league, "dense with exactReplay", Way(), seconds, record=file)
+        size = file.stat().st_size / seconds / 1000
+        judged, good = [], True
+        for start in (0, seconds // 3, seconds // 2):
+            done = subprocess.run([BIN / "sparkreplay", file, "--verify", "--log-level", "error", *(["--from", str(start)] if start else [])],
+                                  stdout=subprocess.PIPE, text=True)
+            line = json.loads(done.stdout)
+            first = start - start % 10
+            good &= done.returncode == 0 and line["differs"] is None and not line["lacks"] and line["cycles"] == 50 * (seconds - first)
+            judged.append(f"from {first} s {line['cycles']} cycles {'equal' if line['differs'] is None else 'differ: ' + str(line['differs'])}")
+    return f"{league.config}, 11 v 11 over TCP, {result['simSeconds']:.0f} s: {', '.join(judged)}; {size:.1f} kB/s, at most 60", PASS if good and size <= 60 else FAIL
+
+
+def snapshots():
+    """Runs that go on from a snapshot, 3000 cycles each, and matches over TCP."""
+    judged = [tests("system-snapshot", environment={"SPARK_SNAPSHOT_CYCLES": "3000"}), in_middle(SPHERES), in_middle(HUMANOIDS)]
+    return "; ".join(measured for measured, _ in judged), FAIL if any(verdict == FAIL for _, verdict in judged) else PASS
+
+
+def cpu_of_simulation(arguments, seconds):
+    """CPU time [s] of the simulation's thread in an 11 v 11 inside the host."""
+    host = subprocess.Popen([BIN / "sparkhost", "--config", "soccer.lua", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true", "--rate", "max",
+                             "--duration", str(seconds), "--web-port", "0", "--agent-port", "0", "--monitor-port", "0", "--log-level", "error", *arguments],
+                            stdout=subprocess.DEVNULL)
+    spent = 0
+    while host.poll() is None:
+        with contextlib.suppress(OSError, IndexError):
+            fields = Path(f"/proc/{host.pid}/task/{host.pid}/stat").read_text().rsplit(")", 1)[1].split()
+            spent = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        time.sleep(0.01)
+    return spent
+
+
+def cost(pairs=5, seconds=20):
+    """What a recording costs the simulation's thread, in pairs, in turns."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "match.mcap"
+        ratios = []
+        for _ in range(pairs):
+            plain = cpu_of_simulation([], seconds)
+            ratios.append(cpu_of_simulation(["--record", file], seconds) / plain)
+        size = file.stat().st_size / seconds / 1000
+    middle = sorted(ratios)[pairs // 2]
+    return (f"CPU time of the simulation's thread with a recording, 11 v 11 humanoids, {pairs} pairs: {middle:.3f} x, at most 1.03 "
+            f"({', '.join(f'{r:.3f}' for r in ratios)}); {size:.1f} kB/s, at most 60"), PASS if middle <= 1.03 and size <= 60 else FAIL
+
+
 POINTS = {
     "1": ("what decides a match is in a hash; each class goes on from its saved state", lambda: tests("contract", "state.*", "core-tree", "lua", "golden", "system-reproducible")),
     "2": ("one match in all ways, dense", lambda: matches("dense")),
     "3": ("the same, dense with exactReplay", lambda: matches("dense with exactReplay")),
     "4": ("the same, articulated", lambda: matches("articulated")),
-    "5": ("recordings: simulated again to the last bit, read by others, cut off, damaged", lambda: tests("recorder", "system-recording", "recording-mcap")),
+    "5": ("recordings: simulated again to the last bit, read by others, cut off, damaged; in the browser", lambda: tests("recorder", "system-recording", "recording-mcap", "browser-rewind", "browser-recording-drop")),
+    "6": ("snapshots: 3000 cycles go on as if not interrupted; an 11 v 11 over TCP", snapshots),
+    "7": ("what a recording costs", cost),
 }

@@ -50,8 +50,9 @@ std::string configText(const std::string& config) {
 
 /// The settings that must be the same for all rows of a table. The number of runs may change.
 Json batchOf(const Options& o) {
-  Json batch{{"config", o.config},
-             {"config's text (hash)", fmt::format("{:016x}", spark::hashBytes(configText(o.config)))},
+  Json batch{{"config", o.from.empty() ? o.config : fmt::format("{} at {}", o.from, o.at)},
+             {"config's text (hash)",
+              fmt::format("{:016x}", spark::hashBytes(configText(o.from.empty() ? o.config : o.from)))},
              {"first seed", o.seed},
              {"duration", o.duration}};
   Json settings = Json::object(), sweep = Json::array(), reports = Json::array();

@@ -10,6 +10,7 @@
 
 #include "batch.h"
 #include "crash_report.h"
+#include "recorded_run.h"
 
 // Exit codes: 0: every run has a row; 1: some rows are errors, or stdout could not be written; 2: an error in the
 // command line, the config or the table, nothing was run; 3: interrupted. stdout gets one JSON line at the end,
@@ -82,6 +83,8 @@ int main(int argc, char** argv) {
     Options options;
     if (const auto code = readOptions(argc, argv, cluster->number() == 0, options)) return *code;
     chooseThreads(options, cluster->neighbours());
+    std::optional<sparkhost::RecordedRun> origin;
+    if (!options.from.empty()) options.origin = &origin.emplace(options.from);
     if (cluster->number() == 0) return lead(options, *cluster);
     runHelper(options, *cluster);
     return 0;

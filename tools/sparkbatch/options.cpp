@@ -56,8 +56,16 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
   std::vector<std::string> settings, sweep, reports;
   app.set_version_flag("--version", "sparkbatch " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
-      ->type_name("FILE")
-      ->required();
+      ->type_name("FILE");
+  auto* from = app.add_option("--from", out.from,
+                              "Runs branch from a snapshot (sparkctl snapshot), or from the last state of a recording, "
+                              "with its config and files; --set, --sweep and seeds count from there on")
+                   ->type_name("FILE")
+                   ->check(CLI::ExistingFile)
+                   ->excludes("--config");
+  app.add_option("--at", out.at, "With --from: not from a later state than at this simulated time [s]")
+      ->type_name("SECONDS")
+      ->needs(from);
   app.add_option("--results", out.results, "The table, one row a run: .csv or .jsonl")->type_name("FILE")->required();
   app.add_option("--runs", out.seeds, "Runs of each combination, each with a seed of its own (default 1)")
       ->type_name("N")
@@ -90,6 +98,7 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
       "was run; 3: it was interrupted.");
   try {
     app.parse(argc, argv);
+    if (out.config.empty() && out.from.empty()) throw CLI::RequiredError("--config");
     checkResults(out.results);
     if (out.seed + static_cast<std::uint64_t>(out.seeds - 1) < out.seed)
       throw CLI::ValidationError(
@@ -110,6 +119,8 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
   }
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
+  if (!out.from.empty())  // a run that goes on works in a folder of its own
+    for (std::string* file : {&out.from, &out.results}) *file = std::filesystem::absolute(*file).string();
   return std::nullopt;
 }
 

@@ -2,6 +2,7 @@
 /// \file
 /// The command line of sparkbatch.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -9,6 +10,10 @@
 #include <vector>
 
 #include "sweep.h"
+
+namespace sparkhost {
+class RecordedRun;
+}
 
 namespace sparkbatch {
 
@@ -20,6 +25,9 @@ struct Report {
 /// The command line options.
 struct Options {
   std::string config, results;
+  std::string from;      ///< snapshot or recording from which all runs branch, instead of a config; "": none
+  double at = HUGE_VAL;  ///< not from a later state than at this simulated time [s]
+  const sparkhost::RecordedRun* origin = nullptr;  ///< that of `from`, while the batch runs
   /// --set, for all runs: keys and texts in order.
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<Parameter> sweep;

@@ -9,6 +9,7 @@
 #include "api/status.h"
 #include "host.h"
 #include "progress.h"
+#include "recorded_run.h"
 #include "spark/describe.h"
 #include "spark/error.h"
 #include "spark/state.h"
@@ -70,7 +71,7 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   out.pluginPaths = options.pluginPaths;
   out.scenePaths = options.scenePaths;
   out.logLevel = options.logLevel;
-  out.alone = true;
+  out.alone = !options.origin;  // a run that goes on has the tree of the first one
   out.overrides = {{"/sys/server/simulation.rate", "max"}, {"/sys/server/simulation.threads", 1}};
   if (options.duration > 0) out.overrides.emplace_back("/sys/server/simulation.duration", options.duration);
   const auto set = [&](const std::string& key, const std::string& text) {
@@ -79,7 +80,10 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   };
   for (const auto& [key, text] : options.settings) set(key, text);
   for (const auto& [key, text] : run.point) set(key, text);
-  return out;
+  if (!options.origin) return out;
+  out.from = options.from;
+  out.at = options.at;
+  return options.origin->options(out);
 }
 
 /// A host whose log lines go to stderr with the run's number. `fault` is set to the log line of the first fault, if the
@@ -173,12 +177,20 @@ void addStatus(Kernel& kernel, Row& row) {
       put(row, entry.name + (i < entry.parts.size() ? entry.parts[i] : std::to_string(i + 1)), elements[i]);
   }
 }
+
+void build(Host& host, const Options& options) {
+  host.build();
+  if (!options.origin) return;
+  host.goOn();
+  // No agent comes from outside.
+  if (Leaf* const control = host.kernel().root().find(kGameControl)) setProperty(*control, "expect", 0);
+}
 }  // namespace
 
 void check(const Options& options, const Run& run) {
   const sparkhost::Options hosted = hostOptions(options, run);
   const auto host = makeHost(hosted, run);
-  host->build();
+  build(*host, options);
 }
 
 Row simulate(const Options& options, const Run& run, RunControl& control) {
@@ -189,7 +201,7 @@ Row simulate(const Options& options, const Run& run, RunControl& control) {
   try {
     const sparkhost::Options hosted = hostOptions(options, run);
     const auto host = makeHost(hosted, run, &fault);
-    host->build();
+    build(*host, options);
     closeNetwork(host->kernel().root());
     host->kernel().registerClass<Pulse>();
     host->kernel().create<Pulse>("Pulse", "/sys/host/pulse").control = &control;

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <thread>
 
@@ -78,9 +79,8 @@ void get(ControlConnection& simulation, const std::string& what) {
 
 void set(ControlConnection& simulation, const std::string& what, const std::string& value) {
   const Target t = split(what, true);
-  for (const Json& p :
-       simulation.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}})["properties"])
-    print(propertyText(p));
+  const Json answer = simulation.ask({{"do", "set"}, {"path", t.path}, {"property", t.member}, {"value", value}});
+  for (const Json& p : answer["properties"]) print(propertyText(p));
 }
 
 void call(ControlConnection& simulation, const std::string& what, const std::vector<std::string>& arguments) {
@@ -148,6 +148,9 @@ int main(int argc, char** argv) {
   CLI::App* unloads =
       app.add_subcommand("unload", "Unloads a plugin that has no objects; a later load reads the file again");
   unloads->add_option("NAME", target)->required();
+  CLI::App* snapshots =
+      app.add_subcommand("snapshot", "Writes the whole simulation to a file, from which sparkhost --from FILE goes on");
+  snapshots->add_option("FILE", target)->required();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -165,6 +168,8 @@ int main(int argc, char** argv) {
     if (*watches) watch(simulation, target);
     if (*loads) print(simulation.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
     if (*unloads) simulation.ask({{"do", "unload"}, {"name", target}});
+    if (*snapshots)
+      call(simulation, "/sys/host/snapshots.save", {std::filesystem::absolute(target).lexically_normal().string()});
     if (*plugins) print(pluginsText(simulation.ask({{"do", "plugins"}})["plugins"]));
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkctl: {}\n", e.what());

@@ -25,7 +25,11 @@ inline std::string checkSeed(const std::string& text) {
 inline void addCommonOptions(CLI::App& app, std::vector<std::string>& pluginPaths, std::vector<std::string>& scenePaths,
                              std::string& logLevel, const std::string& logHelp) {
   const auto folders = [&app](const char* name, std::vector<std::string>& to, const char* what) {
-    app.add_option(name, to, what)->type_name("DIR")->allow_extra_args(false)->check(CLI::ExistingDirectory);
+    app.add_option(name, to, what)
+        ->type_name("DIR")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->allow_extra_args(false)
+        ->check(CLI::ExistingDirectory);
   };
   folders("--plugin-path", pluginPaths, "Folder with plugins, before Spark's own");
   folders("--scene-path", scenePaths, "Folder that holds rsg/..., before Spark's own scenes");

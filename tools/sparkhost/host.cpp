@@ -5,6 +5,7 @@
 #include <array>
 #include <chrono>
 
+#include "api/snapshots.h"
 #include "spark/error.h"
 #include "spark/json_writer.h"
 #include "spark/script_server.h"
@@ -18,6 +19,8 @@ using namespace spark;
 namespace fs = std::filesystem;
 
 namespace {
+constexpr const char* kTape = "/sys/host/tape";
+
 /// Writes the number of a port; null if there is no such port.
 void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
   const Value v = valueAt(root, path, "port");
@@ -46,10 +49,14 @@ std::int64_t messagesDropped(const Leaf& root) {
 Host::Host(const Options& options)
     : options_(options),
       bin_(fs::canonical("/proc/self/exe").parent_path()),
-      share_(options.share.empty() ? bin_.parent_path() / "share" / "spark" : fs::path(options.share)) {
+      share_(options.share.empty() ? installedShare() : fs::path(options.share)) {
   kernel_.log().setLevel(levelFromName(options.logLevel));
   if (options.seed) kernel_.setSeed(*options.seed);
   scanPlugins();
+}
+
+fs::path Host::installedShare() {
+  return fs::canonical("/proc/self/exe").parent_path().parent_path() / "share" / "spark";
 }
 
 void Host::scanPlugins() {
@@ -68,10 +75,30 @@ void Host::build() {
   scripts(kernel_).addFolder(share_ / "lua");
   defineHostTable();
   if (options_.check) scripts(kernel_).warnOfUnsaved();
-  if (!options_.record.empty()) kernel_.sources().keepTexts();
   for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
   scripts(kernel_).runConfig(options_.config);
-  for (const Options::Switch& s : options_.switches) {
+  applySwitches(0);
+  if (!kernel_.root().find("/plugins/recorder")) return;
+  kernel_.plugins().use("recorder");
+  Leaf* snapshots = kernel_.root().find(ISnapshots::kPath);
+  if (!snapshots) snapshots = &kernel_.create<Leaf>("Snapshots", ISnapshots::kPath);
+  setProperty(*snapshots, "arguments", List(options_.arguments.begin(), options_.arguments.end()));
+}
+
+void Host::goOn() {
+  auto* const snapshots = kernel_.root().find<ISnapshots>();
+  if (!snapshots) throw Error("--from: expected the plugin recorder, found none. Add its folder by --plugin-path");
+  snapshots->load(options_.from, options_.at, options_.branch);
+  for (std::size_t i = options_.fromOverrides; i < options_.overrides.size(); ++i)
+    scripts(kernel_).addOverride(options_.overrides[i].first, options_.overrides[i].second);
+  scripts(kernel_).applyOverrides();
+  applySwitches(options_.fromSwitches);
+}
+
+/// Sets the properties of switches, from the one with that index on.
+void Host::applySwitches(std::size_t first) {
+  for (std::size_t i = first; i < options_.switches.size(); ++i) {
+    const Options::Switch& s = options_.switches[i];
     Leaf* node = kernel_.root().find(s.path);
     if (!node)
       throw Error(fmt::format("{}: config '{}' has no {}; or omit {}.", s.flag, options_.config, s.missing,
@@ -82,14 +109,14 @@ void Host::build() {
 
 void Host::record(const std::string& file) {
   kernel_.plugins().use("recorder");
-  Leaf& tape = kernel_.create<Leaf>("Recorder", "/sys/host/tape");
+  Leaf& tape = kernel_.create<Leaf>("Recorder", kTape);
   List arguments(options_.arguments.begin(), options_.arguments.end());
   callMethod(tape, "record", std::vector<Value>{file, std::move(arguments)});
 }
 
 Leaf& Host::play(const std::string& file) {
   kernel_.plugins().use("recorder");
-  Leaf& tape = kernel_.create<Leaf>("InputPlayer", "/sys/host/tape");
+  Leaf& tape = kernel_.create<Leaf>("InputPlayer", kTape);
   callMethod(tape, "open", std::vector<Value>{file});
   return tape;
 }
@@ -123,6 +150,7 @@ std::string Host::run() {
   const auto begin = std::chrono::steady_clock::now();
   callMethod(root.require<Leaf>(kSimulation), "run", {});
   const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (Leaf* const tape = root.find(kTape); tape && !options_.record.empty()) callMethod(*tape, "finish", {});
   const double time = numberAt(root, kSimulation, "time");
   std::string line;
   JsonWriter json(line);

@@ -17,10 +17,14 @@ class Host {
   /// must outlive it.
   explicit Host(const Options& options);
 
+  /// The shared files of the program's installation.
+  static std::filesystem::path installedShare();
   /// The kernel; owned by this object.
   spark::Kernel& kernel() { return kernel_; }
   /// Runs the config, which builds the simulation, then sets the properties of command line switches.
   void build();
+  /// After build(): goes on from the state of options.from.
+  void goOn();
   /// Records to the file, from now on.
   void record(const std::string& file);
   /// Plays a recording from now on, instead of opening ports; the node that plays it.
@@ -35,6 +39,7 @@ class Host {
  private:
   void scanPlugins();
   void defineHostTable();
+  void applySwitches(std::size_t first);
 
   const Options& options_;
   spark::Kernel kernel_;

@@ -1,6 +1,7 @@
 #include "options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "common_options.h"
@@ -19,6 +20,33 @@ std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
 void makeAbsolute(std::vector<std::string>& folders) {
   for (std::string& f : folders) f = std::filesystem::absolute(f).lexically_normal().string();
 }
+
+/// Options that a run which goes on from a file does not take from it, each with one value.
+constexpr std::string_view kOfOneRun[] = {"--record", "--from", "--at", "--hashes", "--hash-every", "--log-level"};
+
+/// Options whose values are secrets. A run that goes on makes up new ones.
+constexpr std::string_view kSecrets[] = {"webToken=", "remoteToken="};
+
+/// The word without the value of a secret.
+std::string withoutSecret(std::string_view word) {
+  for (const std::string_view secret : kSecrets)
+    if (const auto at = word.find(secret); at != std::string_view::npos) word = word.substr(0, at + secret.size());
+  return std::string(word);
+}
+
+/// The words that build the same simulation, without secrets.
+std::vector<std::string> lasting(int argc, char** argv) {
+  std::vector<std::string> out;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i], name = word.substr(0, word.find('='));
+    if (std::find(std::begin(kOfOneRun), std::end(kOfOneRun), name) != std::end(kOfOneRun))
+      i += name == word;
+    else if (word != "--histogram")
+      out.push_back(withoutSecret(word));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::optional<int> readOptions(int argc, char** argv, Options& out) {
@@ -28,13 +56,18 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   std::optional<double> duration;
   std::optional<int> expect, agentPort, monitorPort, webPort;
   bool sync = false;
+  // A run that goes on adds to the command line of the first one.
+  app.option_defaults()->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   app.set_version_flag("--version", "sparkhost " SPARK_VERSION);
   app.add_option("--config", out.config, "Lua config, looked up in the working folder, then in the installed share")
       ->type_name("FILE");
   app.add_option("--set", sets, "Overrides an option of the config, a variable GROUP.NAME or /path.property")
       ->type_name("K=V")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
-  app.add_option("--seed", out.seed, "Seed of all random streams (default 1)")->type_name("N")->check(checkSeed);
+  app.add_option("--seed", out.seed, "Seed of all random streams (default 1); with --from: from there on")
+      ->type_name("N")
+      ->check(checkSeed);
   app.add_option("--rate", rate, "real: paced to wall time (default); max: as fast as it goes")
       ->check(CLI::IsMember({"real", "max"}));
   app.add_flag("--sync", sync, "Lockstep: a cycle starts when every agent has answered with (syn)");
@@ -69,6 +102,15 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--record", out.record, "Record the run to an MCAP file, which sparkreplay simulates again")
       ->type_name("FILE")
       ->excludes("--check");
+  auto* from = app.add_option("--from", out.from,
+                              "Go on from a snapshot (sparkctl snapshot), or from the last state of a recording, with "
+                              "its config and files; other options add to its command line")
+                   ->type_name("FILE")
+                   ->check(CLI::ExistingFile)
+                   ->excludes("--config");
+  app.add_option("--at", out.at, "With --from: not from a later state than at this simulated time [s]")
+      ->type_name("SECONDS")
+      ->needs(from);
   app.add_flag("--histogram", out.histogram, "Print a table of the delay and duration of cycles to stderr at the end");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print the description of a class, and end")
@@ -83,7 +125,8 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   try {
     app.parse(argc, argv);
     for (const std::string& s : sets) out.overrides.push_back(splitOverride(s));
-    if (out.config.empty() && !out.listPlugins && out.describe.empty()) throw CLI::RequiredError("--config");
+    if (out.config.empty() && out.from.empty() && !out.listPlugins && out.describe.empty())
+      throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : kUsageError;
   }
@@ -104,17 +147,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   if (webPort)
     put("--web-port", "/sys/server/web", "port", *webPort,
         "page for browsers: add web() of house.lua, and no --set web=false");
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (word == "--record")
-      ++i;
-    else if (const auto token = word.find("webToken="); token != std::string_view::npos)
-      out.arguments.push_back(std::string(word.substr(0, token)) + "webToken=not-in-the-recording");
-    else if (!word.starts_with("--record="))
-      out.arguments.emplace_back(word);
-  }
+  out.arguments = lasting(argc, argv);
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
+  if (!out.from.empty()) {
+    // A run that goes on works in a folder of its own.
+    for (std::string* file : {&out.from, &out.record, &out.hashes})
+      if (!file->empty()) *file = std::filesystem::absolute(*file).string();
+  }
   return std::nullopt;
 }
 

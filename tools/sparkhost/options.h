@@ -2,6 +2,7 @@
 /// \file
 /// The command line of sparkhost.
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -32,10 +33,14 @@ struct Options {
   std::string logLevel = "info";
   std::string describe;  ///< --describe: name of a class; "": not given
   bool check = false, listPlugins = false, histogram = false;
-  std::string hashes;                  ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
-  std::int64_t hashEvery = 1;          ///< --hash-every
-  std::string record;                  ///< --record: file of the recording; "": none
-  std::vector<std::string> arguments;  ///< the command line without --record, for the recording
+  std::string hashes;          ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
+  std::int64_t hashEvery = 1;  ///< --hash-every
+  std::string record;          ///< --record: file of the recording; "": none
+  std::string from;            ///< --from: snapshot or recording to go on from; "": none
+  std::size_t fromSwitches = 0, fromOverrides = 0;  ///< with --from: number of those that are of the first run
+  std::optional<std::uint64_t> branch;              ///< with --from: another seed from there on
+  double at = HUGE_VAL;                             ///< --at: not from a later state than at this simulated time [s]
+  std::vector<std::string> arguments;  ///< the command line that builds the same, for recordings and snapshots
   std::string share;                   ///< folder with lua/ and scenes/ instead of the program's; "": the program's
   bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
@@ -43,5 +48,4 @@ struct Options {
 /// Parses the command line. If the program is to end at once (help, version, an error), prints that and returns the
 /// exit code: 0, or kUsageError.
 std::optional<int> readOptions(int argc, char** argv, Options& out);
-
 }  // namespace sparkhost

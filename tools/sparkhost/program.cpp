@@ -7,12 +7,14 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 
 #include "crash_report.h"
 #include "describe.h"
 #include "hang_watch.h"
 #include "hash_log.h"
 #include "host.h"
+#include "recorded_run.h"
 #include "spark/error.h"
 #include "status_line.h"
 
@@ -26,8 +28,9 @@ spark::Kernel* stopOnSignal = nullptr;
 
 extern "C" void onSignal(int) { stopOnSignal->requestStop(); }
 
-/// The first SIGINT, SIGTERM or SIGHUP stops the run, a second one kills the process. SIGHUP stays ignored under nohup.
-void watchSignals(spark::Kernel& kernel) {
+}  // namespace
+
+void sparkhost::watchSignals(spark::Kernel& kernel) {
   stopOnSignal = &kernel;
   struct sigaction action = {}, before = {};
   action.sa_handler = onSignal;
@@ -39,6 +42,8 @@ void watchSignals(spark::Kernel& kernel) {
   std::signal(SIGPIPE, SIG_IGN);
 }
 
+namespace {
+
 /// Prints a line to stdout. On error prints a message to stderr and returns false; the run continues.
 bool printLine(const std::string& line) {
   errno = 0;
@@ -49,14 +54,19 @@ bool printLine(const std::string& line) {
   return false;
 }
 
-/// Calls `step`; on an exception prints it to stderr and exits with `code`.
+/// The program ends with this code.
+struct Exit {
+  int code;
+};
+
+/// Calls `step`; on an exception prints it to stderr and throws Exit with `code`.
 template <class F>
 void orExit(int code, F step) {
   try {
     step();
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkhost: {}\n", e.what());
-    std::exit(code);
+    throw Exit{code};
   }
 }
 
@@ -84,20 +94,25 @@ bool runSimulation(sparkhost::Host& host, const std::string& firstLine, bool his
   return printLine(lastLine);
 }
 
-}  // namespace
-
-int sparkhost::runProgram(int argc, char** argv) {
+int run(int argc, char** argv) {
+  using namespace sparkhost;
   installCrashReport("sparkhost");
   Options options;
   if (const auto code = readOptions(argc, argv, options)) return *code;
+  std::optional<RecordedRun> recorded;
   std::optional<Host> host;
   std::string firstLine;
   orExit(2, [&] {
+    refuseSameFile(options.record, options.from, "what the run goes on from");
+    refuseSameFile(options.hashes, options.from, "what the run goes on from");
+    refuseSameFile(options.record, options.hashes, "the file of the hashes");
+    if (!options.from.empty()) options = recorded.emplace(options.from).options(options);
     host.emplace(options);
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());
     HangWatch::install(host->kernel());
     host->build();
+    if (!options.from.empty()) host->goOn();
     if (options.check) checkLog(host->kernel());
     if (!options.hashes.empty()) HashLog::install(host->kernel(), options.hashes, options.hashEvery);
     if (!options.record.empty()) host->record(options.record);
@@ -106,4 +121,24 @@ int sparkhost::runProgram(int argc, char** argv) {
   bool written = true;
   if (!firstLine.empty()) orExit(1, [&] { written = runSimulation(*host, firstLine, options.histogram); });
   return written ? 0 : 1;
+}
+
+}  // namespace
+
+void sparkhost::refuseSameFile(const std::string& written, const std::string& other, const char* what) {
+  namespace fs = std::filesystem;
+  if (written.empty() || other.empty()) return;
+  std::error_code failed;
+  const bool same = fs::exists(written, failed) && fs::exists(other, failed)
+                        ? fs::equivalent(written, other, failed)
+                        : fs::absolute(written).lexically_normal() == fs::absolute(other).lexically_normal();
+  if (same) throw spark::Error(fmt::format("cannot write {}: it is {}; take another name", written, what));
+}
+
+int sparkhost::runProgram(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const Exit& exit) {
+    return exit.code;
+  }
 }

@@ -6,14 +6,16 @@
 #include <nlohmann/json.hpp>
 
 #include "crash_report.h"
+#include "export.h"
 #include "hang_watch.h"
 #include "host.h"
 #include "mcap.h"
-#include "recorded_files.h"
+#include "program.h"
+#include "recorded_run.h"
 #include "spark/error.h"
 
 // Reads recordings of sparkhost --record. Exit codes: 0: done; 1: the simulation differs from the recording; 2: an
-// error in the command line, or in the recording. stdout gets one JSON line.
+// error in the command line, or in the recording. stdout gets one JSON line; with --play those of sparkhost.
 
 namespace {
 
@@ -21,20 +23,58 @@ using Json = nlohmann::ordered_json;
 
 struct Arguments {
   std::string file, logLevel = "warning";
-  bool verify = false;
+  bool verify = false, play = false;
+  double from = -1;  ///< s; -1: at the beginning
+  double speed = 1;
+  int monitorPort = 3200, webPort = 3280;
+  sparkreplay::Export out;
 };
 
 std::optional<int> read(int argc, char** argv, Arguments& out) {
   CLI::App app{"Reads a recording of sparkhost --record.", "sparkreplay"};
   app.add_option("file", out.file, "The recording")->required()->type_name("FILE");
   app.add_flag("--verify", out.verify,
-               "Simulate again from the recorded inputs; compare the hash of each cycle and the recorded states");
+               "Simulate again from the recorded inputs; compare the recorded hashes and states");
+  auto* play = app.add_flag("--play", out.play, "Play the match to monitors and to the page in the browser")
+                   ->excludes("--verify");
+  app.add_option("--from", out.from,
+                 "Begin at this time [s]; --verify and --export: at the newest recorded state up to it")
+      ->type_name("SECONDS")
+      ->check(CLI::NonNegativeNumber);
+  app.add_option("--speed", out.speed, "With --play: 1: as it was; 2: twice as fast; -1: backwards")
+      ->needs(play)
+      ->check(CLI::Range(-100.0, 100.0))
+      ->capture_default_str();
+  const CLI::Range port(0, 65535, "");
+  app.add_option("--monitor-port", out.monitorPort, "With --play: port for monitors; 0: a free one")
+      ->needs(play)
+      ->check(port)
+      ->capture_default_str();
+  app.add_option("--web-port", out.webPort, "With --play: port of the page; 0: a free one")
+      ->needs(play)
+      ->check(port)
+      ->capture_default_str();
+  auto* exported = app.add_option("--export", out.out.out,
+                                  "Write a file: .mcap: the part of the recording; .csv: a table of properties; "
+                                  "otherwise a monitor log, which viewers play")
+                       ->type_name("FILE")
+                       ->excludes("--verify")
+                       ->excludes(play);
+  app.add_option("--to", out.out.to, "With --export: the end [s]")->type_name("SECONDS")->needs(exported);
+  app.add_option("--property", out.out.properties, "With --export FILE.csv: a column; may be given several times")
+      ->type_name("/PATH.PROPERTY")
+      ->needs(exported)
+      ->allow_extra_args(false);
   app.add_option("--log-level", out.logLevel, "Minimum level of log lines on stderr")
       ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
       ->capture_default_str();
   app.footer(
-      "stdout: one JSON line. Without --verify it tells what the recording holds. Exit code 0: done; 1: the "
-      "simulation differs from the recording; 2: the command line or the recording is wrong.");
+      "stdout: one JSON line; without --verify, --play and --export it tells what the recording holds. Exit code 0: "
+      "done; 1: the simulation differs from the recording; 2: the command line or the recording is wrong. While a "
+      "match "
+      "is played, monitors may send (p) pause, (time 30), (speed 2), (l) the other direction; sparkctl sets time, "
+      "speed, "
+      "paused and backward of /sys/server/monitor/player.");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
@@ -43,71 +83,83 @@ std::optional<int> read(int argc, char** argv, Arguments& out) {
   return std::nullopt;
 }
 
-/// The command line of the recorded host.
-std::vector<std::string> recordedArguments(const std::map<std::string, std::string>& about, const std::string& file) {
-  const auto found = about.find("arguments");
-  const auto list = found == about.end() ? nlohmann::json() : nlohmann::json::parse(found->second, nullptr, false);
-  if (!list.is_array())
-    throw spark::Error(fmt::format("{} is no recording of sparkhost: it does not say how it was started", file));
-  std::vector<std::string> out;
-  for (const auto& word : list)
-    if (word.is_string()) out.push_back(word.get<std::string>());
-  return out;
-}
-
 Json describe(const std::string& file, const spark::mcap::Reader& recording) {
-  const auto about = recording.metadataOf("spark");
   Json files = Json::array();
   for (const auto& a : recording.attachments()) files.push_back(a.name);
   return {{"seconds", static_cast<double>(recording.end()) * 1e-9},
           {"chunks", recording.chunks().size()},
-          {"arguments", recordedArguments(about, file)},
+          {"arguments", sparkhost::recordedArguments(file, recording)},
           {"files", std::move(files)},
           {"lacks", recording.lacks()}};
 }
 
 /// Simulates the recorded run again. Returns the line for stdout, and whether it is the same.
-std::pair<Json, bool> verify(const std::string& file, const spark::mcap::Reader& recording,
-                             const std::string& logLevel) {
-  std::vector<std::string> words = recordedArguments(recording.metadataOf("spark"), file);
-  words.insert(words.begin(), "sparkhost");
-  const sparkreplay::RecordedFiles files(recording);
-  std::filesystem::current_path(files.scripts());  // scripts are searched there before anywhere else
-  std::vector<char*> argv;
-  argv.reserve(words.size());
-  for (std::string& word : words) argv.push_back(word.data());
-  sparkhost::Options options;
-  if (sparkhost::readOptions(static_cast<int>(argv.size()), argv.data(), options))
-    throw spark::Error(fmt::format("{}: its command line is of another version", file));
-  options.logLevel = logLevel;
-  options.share = files.share();
-  if (const std::filesystem::path config(options.config); config.is_absolute())
-    options.config = files.scripts() / config.filename();
+std::pair<Json, bool> verify(const std::string& file, double from, const std::string& logLevel) {
+  sparkhost::RecordedRun recorded(file);
+  sparkhost::Options own;
+  own.logLevel = logLevel;
+  const sparkhost::Options options = recorded.options(own);
   sparkhost::Host host(options);
   sparkhost::HangWatch::install(host.kernel());  // the command line may set its properties
   host.build();
   spark::Leaf& tape = host.play(file);
+  sparkhost::watchSignals(host.kernel());
+  if (from > 0) {
+    const spark::Value at(from);
+    spark::callMethod(tape, "seek", std::span(&at, 1));
+  }
   host.run();
+  if (host.kernel().stopRequested()) throw spark::Error("interrupted before the end of the recording");
   const auto property = [&tape](const char* name) { return spark::getProperty(tape, name); };
-  Json line{{"cycles", property("compared").toInteger()}, {"states", property("states").toInteger()}};
+  Json line{{"cycles", property("cycles").toInteger()},
+            {"hashes", property("compared").toInteger()},
+            {"states", property("states").toInteger()}};
   const std::int64_t at = property("differsAt").toInteger();
   if (at < 0)
     line["differs"] = nullptr;
   else
     line["differs"] = {{"cycle", at}, {"what", property("difference").toString()}};
-  line["lacks"] = files.lacks();
+  line["lacks"] = recorded.files().lacks();
   const spark::Value lacks = property("lacks");
   for (const spark::Value& v : lacks.toList()) line["lacks"].push_back(v.toString());
   return {line, at < 0};
+}
+
+/// Plays the match, as the config logplayer.lua does.
+int play(const Arguments& arguments, const std::string& file) {
+  std::vector<std::string> words{"sparkreplay", "--config", "logplayer.lua", "--log-level", arguments.logLevel};
+  for (const std::string& set : {fmt::format("file={}", file), fmt::format("speed={}", arguments.speed),
+                                 fmt::format("from={}", arguments.from)}) {
+    words.emplace_back("--set");
+    words.push_back(set);
+  }
+  for (const auto& [name, number] :
+       {std::pair("--monitor-port", arguments.monitorPort), std::pair("--web-port", arguments.webPort)}) {
+    words.emplace_back(name);
+    words.push_back(std::to_string(number));
+  }
+  std::vector<char*> line;
+  line.reserve(words.size() + 1);
+  for (std::string& word : words) line.push_back(word.data());
+  line.push_back(nullptr);
+  return sparkhost::runProgram(static_cast<int>(words.size()), line.data());
 }
 
 int run(int argc, char** argv) {
   Arguments arguments;
   if (const auto code = read(argc, argv, arguments)) return *code;
   const std::string file = std::filesystem::absolute(arguments.file);
+  if (arguments.play) return play(arguments, file);
+  arguments.from = std::max(arguments.from, 0.0);
+  if (!arguments.out.out.empty()) {
+    sparkreplay::Export what = arguments.out;
+    what.file = file, what.from = arguments.from, what.logLevel = arguments.logLevel;
+    fmt::print("{}\n", Json{{"file", what.out}, {"written", sparkreplay::write(what)}}.dump());
+    return 0;
+  }
   const spark::mcap::Reader recording(file);
   const auto [line, same] =
-      arguments.verify ? verify(file, recording, arguments.logLevel) : std::pair(describe(file, recording), true);
+      arguments.verify ? verify(file, arguments.from, arguments.logLevel) : std::pair(describe(file, recording), true);
   fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
   return same ? 0 : 1;
 }

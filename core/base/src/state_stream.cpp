@@ -13,8 +13,10 @@ namespace spark {
 void StateWriter::word(std::uint64_t w) {
   a_ = std::rotl(a_ ^ (w * 0xff51afd7ed558ccdull), 29) * 0xc4ceb9fe1a85ec53ull + 0x9e3779b97f4a7c15ull;
   ++count_;
-  if (keep_)
-    for (int i = 0; i < 8; ++i) bytes_.push_back(static_cast<char>(w >> (8 * i)));
+  if (!keep_) return;
+  char bytes[8];
+  for (int i = 0; i < 8; ++i) bytes[i] = static_cast<char>(w >> (8 * i));
+  bytes_.append(bytes, 8);
 }
 
 void StateWriter::write(double v) { word(std::bit_cast<std::uint64_t>(v)); }
@@ -54,6 +56,13 @@ void StateWriter::write(const Value& v) {
   }
 }
 
+void StateWriter::aside(std::string_view v) {
+  if (!keep_) return;
+  const auto a = a_, count = count_;
+  write(v);
+  a_ = a, count_ = count;
+}
+
 std::uint64_t StateWriter::hash() const {
   // MurmurHash3's finaliser.
   std::uint64_t h = a_ ^ count_;
@@ -90,6 +99,22 @@ std::string StateReader::readString() {
   return out;
 }
 
+namespace {
+/// Lists in lists, in a call of readValue().
+constexpr int kMostLevels = 1000;
+thread_local int levels = 0;
+struct Inside {
+  Inside() {
+    if (++levels <= kMostLevels) return;
+    --levels;
+    throw Error(fmt::format("saved state holds more than {} lists in each other", kMostLevels));
+  }
+  ~Inside() { --levels; }
+  Inside(const Inside&) = delete;
+  Inside& operator=(const Inside&) = delete;
+};
+}  // namespace
+
 Value StateReader::readValue() {
   // The numbers of Value::Type, which saved files contain.
   switch (const std::uint64_t type = word()) {
@@ -104,6 +129,7 @@ Value StateReader::readValue() {
     case 4:
       return readString();
     case 5: {
+      const Inside inside;
       List list;
       for (std::uint64_t n = word(); n > 0; --n) list.push_back(readValue());
       return list;

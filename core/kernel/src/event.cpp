@@ -98,7 +98,7 @@ void Channel::emit(const Event& event) {
     if (i + kFar < entries_.size()) prefetch(entries_[i + kFar].node, kNode);
     if (const Leaf* next = i + kNear < entries_.size() ? entries_[i + kNear].node : nullptr; next && next->parent())
       prefetch(next->parent() + 1, kAbove);
-    if (!entries_[i].node) continue;
+    if (!entries_[i].node || entries_[i].elsewhere) continue;
     now.at(entries_[i].node);
     run(entries_[i], event);
   }
@@ -133,7 +133,9 @@ void Channel::blank(Entry& entry) {
 std::uint64_t Channel::add(Leaf& node, Handler handler) {
   if (!node.isLinked())
     throw Error(fmt::format("cannot handle '{}' at {}: it is not linked into the tree", name_, node.path()));
-  insert({&node, nullptr, std::move(handler), ++lastNumber_});
+  const auto source = node.as<IEventSource>();
+  if (source) source->listened(name_);
+  insert({&node, nullptr, std::move(handler), ++lastNumber_, bool(source)});
   return lastNumber_;
 }
 

@@ -62,8 +62,8 @@ Jobs& Kernel::jobs() { return parts_->jobs; }
 detail::Tree& Kernel::tree() { return parts_->tree; }
 detail::ClassRegistry& Kernel::registry() { return parts_->classes; }
 
-ClassObject& Kernel::addClass(ClassDescription description) {
-  return parts_->classes.add(std::move(description), nullptr);
+ClassObject& Kernel::registerClass(ClassDescription description, Plugin* plugin) {
+  return parts_->classes.add(std::move(description), plugin);
 }
 
 ClassObject* Kernel::findClass(std::string_view name) const { return parts_->classes.find(name); }
@@ -142,7 +142,7 @@ Sources& Kernel::sources() { return parts_->sources; }
 void Sources::add(std::string_view kind, std::string_view name, std::string_view text) {
   const std::uint64_t hash = hashBytes(text);
   all_.insert({std::string(kind), std::string(name), hash});
-  if (keepsTexts_) texts_.try_emplace(hash, text);
+  texts_.try_emplace(hash, text);
 }
 
 const std::string* Sources::text(std::uint64_t hash) const {

@@ -103,4 +103,16 @@ Value Convert<RandomStream>::to(const RandomStream& r) {
   return out;
 }
 
+Value branched(const Value& stream, std::uint64_t branch) {
+  if (branch == 0 || !stream.isList() || stream.toList().size() != 6) return stream;
+  List out = stream.toList();
+  // New words from the old ones, so that no draw of a branch is one of another.
+  std::uint64_t seed = branch;
+  for (int i = 0; i < 4; ++i) seed = mix(seed ^ static_cast<std::uint64_t>(out[i].toInteger()));
+  for (int i = 0; i < 4; ++i) out[i] = Value(static_cast<std::int64_t>(mix(seed += kGoldenGamma)));
+  out[4] = out[4].toInteger() & 1;  // without a second number of normal()
+  out[5] = 0.0;
+  return out;
+}
+
 }  // namespace spark

@@ -1,8 +1,11 @@
 #include "spark/state.h"
 
+#include <set>
+
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 #include "spark/node.h"
+#include "spark/random.h"
 #include "tree.h"
 
 namespace spark {
@@ -46,7 +49,8 @@ void loadTree(Leaf& leaf, StateReader& in) {
   if (isRoot(leaf)) leaf.kernel().loadState(in);
   if (leaf.classObject())
     for (const Property* p : leaf.classObject()->stateProperties()) {
-      const Value v = in.readValue();
+      Value v = in.readValue();
+      if (in.branch() != 0 && p->type == Convert<RandomStream>::typeName()) v = branched(v, in.branch());
       Args args{std::span(&v, 1)};
       if (p->set) p->set(leaf, args);  // a read-only property restores itself by loadState()
     }
@@ -64,9 +68,14 @@ std::uint64_t stateHash(const Leaf& root) {
 std::uint64_t configurationHash(const Leaf& root) {
   StateWriter out(false);
   out.write(root.kernel().seed());
-  for (const Sources::Source& s : root.kernel().sources().all()) {
+  std::set<Sources::Source> texts;
+  for (Sources::Source s : root.kernel().sources().all()) {
+    if (s.name.starts_with('/')) s.name.erase(0, s.name.rfind('/'));  // the folder decides nothing
+    texts.insert(std::move(s));
+  }
+  for (const Sources::Source& s : texts) {
     out.write(s.kind);
-    out.write(s.name.starts_with('/') ? s.name.substr(s.name.rfind('/')) : s.name);  // the folder decides nothing
+    out.write(s.name);
     out.write(s.hash);
   }
   writeConfiguration(root, out);

@@ -194,7 +194,7 @@ void Memory::load(StateReader& in) {
     throw Error(fmt::format("expected the state of {} scripts, found that of {}", entries_.size(), count));
   for (const Entry& e : entries_) {
     const bool seeded = in.readBool();
-    const Value numbers = in.readValue();
+    const Value numbers = branched(in.readValue(), in.branch());
     const std::string own = in.readString();
     const auto failure = e.state.lock()->run(kUnlimited, [&](lua_State* L) {
       lua_rawgeti(L, LUA_REGISTRYINDEX, e.stream);

@@ -44,6 +44,8 @@ void ScriptServer::loadState(StateReader& in) {
 void ScriptServer::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
 void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
 
+void ScriptServer::applyOverrides() { impl_->settings.apply(); }
+
 void ScriptServer::runConfig(std::string_view file) {
   const auto running = impl_;
   const script::Script config = running->readConfig(file);

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "../stream_encoder.h"
+#include "../stream/stream_encoder.h"
 
 namespace spark::web::test {
 

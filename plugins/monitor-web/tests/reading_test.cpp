@@ -1,10 +1,10 @@
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
-#include "../messages.h"
-#include "../referee.h"
 #include "../site.h"
+#include "../stream/messages.h"
 #include "../viewer_message.h"
+#include "api/credentials.h"
 #include "spark/error.h"
 #include "temporary_folder.h"
 
@@ -25,10 +25,31 @@ TEST_CASE("Viewers' messages are parsed, or refused with the expected format") {
   CHECK(readViewerMessage(R"({"do":"unwatch","id":8})").what == What::unwatch);
   const ViewerMessage watch = readViewerMessage(R"({"do":"watch","id":-3,"path":"/x","property":"p"})");
   CHECK((watch.what == What::request && watch.id == -3));
-  for (const char* bad :
-       {"", "x", "7", "[]", "{}", R"({"do":1})", R"({"do":"view","rate":"x"})", R"({"do":"view","detail":"rough"})",
-        R"({"do":"login"})", R"({"do":"get"})", R"({"do":"get","id":1.5})", R"({"do":"drawings"})",
-        R"({"do":"command","id":1})", "{\"do\":\"get\",\"id\":1,\"x\":\"\xff\"}"}) {
+  CHECK(readViewerMessage(R"({"do":"history","id":1})").what == What::history);
+  CHECK_FALSE(readViewerMessage(R"({"do":"history","id":1})").at.has_value());
+  CHECK(readViewerMessage(R"({"do":"history","id":1,"at":-2.5e300})").at == -2.5e300);
+  CHECK(readViewerMessage(R"({"do":"history","id":1,"scene":4294967295})").scene == 4294967295u);
+  for (const char* bad : {"",
+                          "x",
+                          "7",
+                          "[]",
+                          "{}",
+                          R"({"do":1})",
+                          R"({"do":"view","rate":"x"})",
+                          R"({"do":"view","detail":"rough"})",
+                          R"({"do":"login"})",
+                          R"({"do":"get"})",
+                          R"({"do":"get","id":1.5})",
+                          R"({"do":"drawings"})",
+                          R"({"do":"command","id":1})",
+                          R"({"do":"history"})",
+                          R"({"do":"history","id":1,"at":"x"})",
+                          R"({"do":"history","id":1,"at":1e999})",
+                          R"({"do":"history","id":1,"at":null})",
+                          R"({"do":"history","id":1,"scene":-1})",
+                          R"({"do":"history","id":1,"scene":1.5})",
+                          R"({"do":"history","id":1,"scene":4294967296})",
+                          "{\"do\":\"get\",\"id\":1,\"x\":\"\xff\"}"}) {
     INFO(bad);
     CHECK_THROWS_AS(readViewerMessage(bad), Error);
   }

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "../messages.h"
 #include "../status_report.h"
+#include "../stream/messages.h"
 #include "spark/describe.h"
 #include "test_support.h"
 
@@ -45,6 +45,8 @@ class TwoAgents : public Node, public IGameControl {
   int agentsSeen() const override { return 2; }
   const Predicates* percepts(const AgentAspect&) const override { return nullptr; }
   double latency(const AgentAspect& agent) const override { return &agent == all[0] ? 0.0125 : std::nan(""); }
+  void withdrawAgents() override {}
+  void restoreAgent(Node&, const std::string&, int) override {}
   std::vector<AgentAspect*> all;
 };
 

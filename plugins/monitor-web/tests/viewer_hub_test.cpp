@@ -3,13 +3,14 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
-#include "frame_reader.h"
+#include "piece_reader.h"
 #include "spark/log.h"
 
 using namespace spark;
 using namespace spark::web;
 using Catch::Contains;
 using spark::web::test::FrameReader;
+using spark::web::test::ReadPiece;
 using std::chrono::milliseconds;
 
 namespace {
@@ -21,7 +22,9 @@ class FakeViewer : public Viewer {
   /// Completes the transmission of the current message.
   void takeOne() {
     ++(sending.binary() ? frames : texts);
-    if (sending.binary())
+    if (sending.isPast())
+      lastPast = *sending.bytes;
+    else if (sending.binary())
       lastFrame = *sending.bytes;
     else
       said += *sending.bytes + "\n";
@@ -33,7 +36,7 @@ class FakeViewer : public Viewer {
   }
   bool lastIsKey() const { return lastFrame.front() == 1; }
   int resumed = 0, frames = 0, texts = 0;
-  std::string said, lastFrame, why;
+  std::string said, lastFrame, lastPast, why;
   Message sending;
 
  private:
@@ -44,7 +47,8 @@ class FakeViewer : public Viewer {
 
 /// A hub without a simulation; the test provides the frames.
 struct HubFixture {
-  HubFixture() {
+  explicit HubFixture(double history = 0)
+      : hub(exchange, log, {"0123456789abcdef", 0.02, 25, 10, history, std::size_t{1} << 20}) {
     log.setSink([](Level, std::string_view) {});
     scene = std::make_shared<SceneDescription>();
     scene->nodes.resize(3);
@@ -92,7 +96,7 @@ struct HubFixture {
 
   Exchange exchange;
   Log log;
-  ViewerHub hub{exchange, log, {"0123456789abcdef", 0.02, 25, 10}};
+  ViewerHub hub;
   Clock::time_point now = Clock::now();
   std::shared_ptr<SceneDescription> scene;
   std::vector<std::uint8_t> visible{1, 1, 1};
@@ -284,6 +288,86 @@ TEST_CASE("Only a viewer with the token may give commands, and one that guesses 
   auto guesser = t.enter();
   for (int i = 0; i < 5; ++i) t.hub.onMessage(*guesser, R"({"do":"login","token":"x"})", t.now);
   CHECK_THAT(guesser->why, Contains("wrong tokens"));
+}
+
+TEST_CASE("With a history, frames are requested by simulated time, also without viewers") {
+  HubFixture t(60);
+  CHECK(t.exchange.watched);
+  t.hub.tick(t.now);
+  CHECK(t.exchange.wanted.load() != nullptr);
+  CHECK(t.exchange.wantsNow());
+  REQUIRE(t.frame());
+  t.hub.tick(t.now);
+  CHECK_FALSE(t.exchange.wantsNow());
+  CHECK(t.exchange.wantedFrom == Approx(0.12));
+  auto viewer = t.enter();
+  t.hub.tick(t.now);
+  CHECK(t.exchange.wantsNow());
+  t.hub.onDisconnect(*viewer);
+  CHECK(t.exchange.watched);
+}
+
+TEST_CASE("A viewer gets any piece of the past, its scene, and an outline") {
+  HubFixture t(60);
+  for (int i = 0; i < 300; ++i) REQUIRE(t.frame());
+  t.mode = 4;
+  t.frame();
+  auto viewer = t.enter();
+  const auto ask = [&](const std::string& message) {
+    viewer->said.clear();
+    viewer->lastPast.clear();
+    t.hub.onMessage(*viewer, message, t.now);
+    viewer->takeAll();
+  };
+  viewer->takeAll();
+  CHECK_THAT(viewer->said, Contains("\"history\":60"));
+  ask(R"({"do":"history","id":5,"at":3.5})");
+  CHECK_THAT(viewer->said, Contains(R"({"type":"answer","id":5,"ok":true,"from":0.04,"to":12.04})"));
+  const ReadPiece piece(viewer->lastPast);
+  CHECK((piece.from <= 3.5 && piece.to > 3.5));
+  FrameReader reader(2);
+  for (const std::string& frame : piece.frames) reader.take(frame);
+  ask(R"({"do":"history","id":6,"scene":)" + std::to_string(piece.shape) + "}");
+  CHECK_THAT(ReadPiece(viewer->lastPast).texts.at(0), Contains("StdUnitBox"));
+  ask(R"({"do":"history","id":7})");
+  CHECK_THAT(viewer->lastPast, Contains(R"("messages":[{"type":"environment","time":0.04,"full":true)") &&
+                                   Contains(R"(["play_mode",4])"));
+  ask(R"({"do":"history","id":8,"scene":77})");
+  CHECK_THAT(viewer->said, Contains(R"("id":8,"ok":false)"));
+  HubFixture without;
+  auto other = without.enter();
+  without.hub.onMessage(*other, R"({"do":"history","id":1,"at":0})", without.now);
+  other->takeAll();
+  CHECK_THAT(other->said, Contains("keeps no history"));
+}
+
+TEST_CASE("A viewer that asks for the past again and again has one message of it in its queue, and is closed") {
+  HubFixture t(60);
+  for (int i = 0; i < 300; ++i) REQUIRE(t.frame());
+  auto greedy = t.enter(), other = t.enter();
+  greedy->takeAll(), other->takeAll();
+  t.hub.onMessage(*greedy, R"({"do":"history","id":1,"at":3})", t.now);
+  CHECK_FALSE(greedy->mayRead());  // the transport reads nothing now
+  greedy->takeAll();
+  CHECK(greedy->mayRead());
+  t.hub.onMessage(*greedy, R"({"do":"history","id":2})", t.now);
+  CHECK_FALSE(greedy->mayRead());
+  greedy->takeAll();
+  int answered = 0;
+  for (; greedy->why.empty() && answered < 1000; ++answered) {
+    t.hub.onMessage(*greedy, R"({"do":"history","id":1,"at":1e300})", t.now);
+    greedy->takeAll();
+  }
+  CHECK_THAT(greedy->why, Contains("too many"));
+  CHECK((answered > 20 && answered < 50));
+  // Who asks fifteen times a second, as the page does, is never closed; and frames go on for all.
+  for (int i = 0; i < 600; ++i) {
+    REQUIRE(t.frame());
+    if (i % 2 == 0) t.hub.onMessage(*other, R"({"do":"history","id":1,"at":5})", t.now);
+    other->takeAll();
+  }
+  CHECK(other->why.empty());
+  CHECK(other->frames > 550);
 }
 
 TEST_CASE("The status is requested once a second, and without viewers when a page requests it") {

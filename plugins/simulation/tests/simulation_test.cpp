@@ -239,6 +239,18 @@ TEST_CASE("In real time the simulation is never faster than wall time") {
   REQUIRE(spent >= 5 * 0.02);
 }
 
+TEST_CASE("A run that was faster than real time goes on at once when it is paced again") {
+  LoopFixture f;
+  constexpr std::int64_t kAhead = 20000;  // cycles: 400 s, in no time
+  f.host.kernel.events().channel("publish").add(f.host.kernel.root(), [&f](Leaf&, const Event& event) {
+    if (event.cycle == kAhead) setProperty(*f.simulation, "rate", "real");
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  f.runCycles(kAhead + 3);
+  // It does not wait for what it was ahead.
+  CHECK(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() < 200);
+}
+
 TEST_CASE("Lost time and late cycles are reported in real time only") {
   for (const char* rate : {"real", "max"}) {
     LoopFixture f;

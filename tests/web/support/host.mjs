@@ -26,7 +26,10 @@ export function temporaryFolder(t) {
   return folder;
 }
 
-/** Starts a host that ends with the test. `url` is the link for spectators, `refereeUrl` the one with the token. */
+/**
+ * Starts a host that ends with the test. `url` is the link for spectators, `refereeUrl` the one with the token; `halt`
+ * stops its process, so that the page keeps its last frame.
+ */
 export async function startHost(t, ...options) {
   return startHostIn(undefined, t, ...options);
 }
@@ -41,12 +44,13 @@ export async function startHostIn(cwd, t, ...options) {
   t.after(async () => {
     await closePages(t);
     child.kill();
+    child.kill("SIGCONT");
     await ended;
   });
   const first = await Promise.race([new Promise((heard) => lines.once("line", heard)), ended]);
   if (typeof first !== "string") throw new Error(`sparkhost ended at once:\n${log.join("\n")}`);
   const said = JSON.parse(first);
-  return { url: said.web, refereeUrl: said.referee, said, log, ended, ctl: (...words) => ctl(child.pid, words) };
+  return { url: said.web, refereeUrl: said.referee, said, log, ended, ctl: (...words) => ctl(child.pid, words), halt: () => child.kill("SIGSTOP") };
 }
 
 /** The output of sparkctl for a host. */

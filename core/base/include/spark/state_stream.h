@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "spark/abi/spark/state_stream.h"
 #include "spark/value.h"
@@ -16,6 +17,8 @@ class StateWriter {
  public:
   /// `keep` false: only the hash is computed, the bytes are not kept.
   explicit StateWriter(bool keep) : keep_(keep) {}
+  /// Keeps the bytes, in the memory of `memory`, whose content is lost.
+  explicit StateWriter(std::string memory) : keep_(true), bytes_(std::move(memory)) { bytes_.clear(); }
   /// Writes a number, bit by bit.
   void write(double v);
   /// Writes an integer.
@@ -34,10 +37,17 @@ class StateWriter {
   void write(const char* v) { write(std::string_view(v)); }
   /// Writes a value with its type.
   void write(const Value& v);
+  /// Writes bytes that are read again but do not count for the hash: what tells of this process, and is needed to go on
+  /// from it, such as who is connected. Nothing happens unless bytes are kept.
+  void aside(std::string_view v);
+  /// True if bytes are kept.
+  bool keeps() const { return keep_; }
   /// The hash of everything written so far.
   std::uint64_t hash() const;
   /// The bytes written so far; empty unless they are kept.
   const std::string& bytes() const { return bytes_; }
+  /// The same, taken out of the writer.
+  std::string take() { return std::move(bytes_); }
 
  private:
   void word(std::uint64_t w);
@@ -46,12 +56,14 @@ class StateWriter {
   std::string bytes_;
 };
 
-/// Reads the bytes of a StateWriter, in the order in which they were written. Throws Error if the bytes end early or a
-/// value has an unknown type.
+/// Reads the bytes of a StateWriter, in the order in which they were written (those put aside as texts). Throws Error
+/// if the bytes end early or a value has an unknown type.
 class StateReader {
  public:
-  /// `bytes` must outlive the reader.
-  explicit StateReader(std::string_view bytes) : bytes_(bytes) {}
+  /// `bytes` must outlive the reader. `branch`: see there.
+  explicit StateReader(std::string_view bytes, std::uint64_t branch = 0) : bytes_(bytes), branch_(branch) {}
+  /// Not 0: random streams that are read go another way from here, each number its own.
+  std::uint64_t branch() const { return branch_; }
   /// Reads a number.
   double readNumber();
   /// Reads an integer.
@@ -71,6 +83,7 @@ class StateReader {
  private:
   std::uint64_t word();
   std::string_view bytes_;
+  std::uint64_t branch_;
 };
 
 }  // namespace spark

@@ -25,6 +25,15 @@ struct Event {
   Value* answer = nullptr;      ///< set to what a script's handler returns; nullptr: the emitter does not want it
 };
 
+/// A node whose events come from elsewhere, such as from another host: emit() passes it by, emitAt() reaches it.
+class IEventSource {
+ public:
+  SPARK_INTERFACE(IEventSource, 1);
+  virtual ~IEventSource() = default;
+  /// A handler is being added to the node, for a channel of that name. If it throws, the handler is not added.
+  virtual void listened(const std::string& channel) = 0;
+};
+
 /// The order in which the handlers of a channel run. Handlers of one node run in the order in which they were added.
 enum class Order { parentsFirst, childrenFirst };
 
@@ -34,13 +43,13 @@ class Channel {
  public:
   /// Handles an event at a node.
   using Handler = std::function<void(Leaf&, const Event&)>;
-  /// Runs all handlers in tree order. Handlers may add and remove nodes and handlers; new handlers run from the next
-  /// event on. A handler that throws is logged once and counted (Kernel::faults).
+  /// Runs all handlers in tree order, but for those of an IEventSource. Handlers may add and remove nodes and handlers;
+  /// new handlers run from the next event on. A handler that throws is logged once and counted (Kernel::faults).
   void emit(const Event& event);
   /// Runs only the handlers of `node` itself.
   void emitAt(Leaf& node, const Event& event);
   /// Adds a handler to a linked node until the node is unlinked. Returns a number for remove(). Throws Error if the
-  /// node is not linked.
+  /// node is not linked, and what IEventSource::listened() throws.
   std::uint64_t add(Leaf& node, Handler handler);
   /// Removes the handler for which add() returned this number. Ignores 0 and unknown numbers.
   void remove(std::uint64_t subscription);
@@ -59,8 +68,9 @@ class Channel {
     Leaf* node;                          // nullptr once removed
     void (*plain)(Leaf&, const Event&);  // of a hook; nullptr if `handler` is used
     Handler handler;
-    std::uint64_t number;  // of the subscription, 0 for a hook
-    bool faulty = false;   // it has thrown and been logged
+    std::uint64_t number;    // of the subscription, 0 for a hook
+    bool elsewhere = false;  // the node's events come from elsewhere
+    bool faulty = false;     // it has thrown and been logged
   };
   void sort();
   void settle();

@@ -57,8 +57,10 @@ class Kernel {
   /// Registers a class of the program itself. Throws Error if there is a class of that name.
   template <class T>
   void registerClass() {
-    addClass(describeClass<T>());
+    registerClass(describeClass<T>(), nullptr);
   }
+  /// Registers a class that was described at run time, as one of a plugin (nullptr: of the program).
+  ClassObject& registerClass(ClassDescription description, Plugin* plugin);
   /// All classes in order of name.
   std::vector<ClassObject*> classes() const;
   /// Makes an object of a class at an absolute path; missing parents are made as Nodes. Throws Error if there is no
@@ -117,7 +119,6 @@ class Kernel {
   detail::ClassRegistry& registry();
 
  private:
-  ClassObject& addClass(ClassDescription description);
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };

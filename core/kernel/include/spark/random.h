@@ -70,6 +70,9 @@ struct Convert<RandomStream> {
   static Value to(const RandomStream& stream);
 };
 
+/// A stream as a Value, in state that is read with that StateReader::branch().
+Value branched(const Value& stream, std::uint64_t branch);
+
 /// A 64-bit hash of bytes, the same on every machine: FNV-1a (Fowler, Noll, Vo) followed by the finaliser of splitmix64
 /// (Steele, Lea, Flood 2014).
 std::uint64_t hashBytes(std::string_view bytes, std::uint64_t seed = 0);

@@ -25,9 +25,7 @@ class Sources {
   };
   /// Notes a text that was run or read; the same one again changes nothing.
   void add(std::string_view kind, std::string_view name, std::string_view text);
-  /// From now on texts are kept as well, for a recording.
-  void keepTexts() { keepsTexts_ = true; }
-  /// The text with that hash; nullptr if it was not kept.
+  /// The text with that hash, for recordings and snapshots; nullptr if there is none.
   const std::string* text(std::uint64_t hash) const;
   /// All, by kind and name; a name has several entries where its text changed.
   const std::set<Source>& all() const { return all_; }
@@ -35,7 +33,6 @@ class Sources {
  private:
   std::set<Source> all_;
   std::map<std::uint64_t, std::string> texts_;
-  bool keepsTexts_ = false;
 };
 
 }  // namespace spark

@@ -34,6 +34,9 @@ class ScriptServer : public Leaf, public IScriptServer {
   /// Adds an override, as `--set KEY=VALUE` does. The key is an option, `Namespace.Name` or `/path.property`. What the
   /// config assigns to it is ignored. Throws Error for a malformed key.
   void addOverride(std::string key, Value value);
+  /// Sets the members of nodes that were added by addOverride() since the config ran. Throws Error for an unknown
+  /// member or a value that does not fit.
+  void applyOverrides();
   /// Sets a global of configs, to be called before one runs. A list of pairs whose keys are strings becomes a table
   /// ({{"limit", 3}} is {limit = 3}), at any depth.
   void setGlobal(std::string_view name, const Value& value);

@@ -118,6 +118,26 @@ export interface Source {
   close(): void;
 }
 
+/// What the timeline controls: a recording, or the last minutes of a running match.
+export interface Playback {
+  readonly world: World;
+  /// Simulated time of the first and last frame [s].
+  readonly start: number;
+  readonly end: number;
+  /// All events in chronological order. World.events contains those up to the current time.
+  readonly timeline: readonly GameEvent[];
+  /// The requested time, which World.time reaches as soon as it is loaded [s].
+  readonly time: number;
+  /// True while the newest instant of a running match is shown, and those that come.
+  readonly following: boolean;
+  playing: boolean;
+  /// 0.1..10; negative: backwards.
+  speed: number;
+  seek(time: number): void;
+  /// Moves one frame forward (1) or back (-1) and pauses.
+  step(direction: 1 | -1): void;
+}
+
 /// The running match, over a WebSocket.
 export interface LiveSource extends Source {
   readonly kind: "live";
@@ -125,6 +145,8 @@ export interface LiveSource extends Source {
   /// "lost": it was open, and reconnection attempts are being made.
   readonly state: "connecting" | "open" | "lost";
   readonly status: Status | null;
+  /// Its last minutes; null: the host keeps none.
+  readonly past: (Playback & { follow(): void }) | null;
   /// True if the host accepted the token.
   readonly referee: boolean;
   /// Sends a request to the host (of the control plugin: tree, get, set, call; also contacts, percepts, joints).
@@ -144,22 +166,14 @@ export interface LiveSource extends Source {
 }
 
 /// A recorded match.
-export interface ReplaySource extends Source {
+export interface ReplaySource extends Source, Playback {
   readonly kind: "replay";
+  readonly world: World;
   readonly name: string;
-  /// Simulated time of the first and last record [s].
-  readonly start: number;
-  readonly end: number;
-  /// All events of the log in chronological order. World.events contains those up to the current time.
-  readonly timeline: GameEvent[];
-  /// Number of damaged lines that were skipped so far.
+  /// Number of damaged lines or parts that were skipped so far.
   readonly damaged: number;
+  /// What is missing, in sentences for the user; null: nothing that is known.
+  readonly lacks: string | null;
   /// Why the log can no longer be read (its file was changed or removed), or null.
   readonly error: string | null;
-  playing: boolean;
-  /// 0.1..10
-  speed: number;
-  seek(time: number): void;
-  /// Moves one record forward (1) or back (-1) and pauses.
-  step(direction: 1 | -1): void;
 }

@@ -69,6 +69,8 @@ class Inspector implements Panel {
   }
 
   update(now: number): void {
+    // Overlays show what the host knows now.
+    if (this.app.live && this.app.inPast) this.hideOverlays();
     this.overlays.update(now, this.around);
     this.drawings.update();
     if (!this.pace.due(now)) return;
@@ -89,7 +91,7 @@ class Inspector implements Panel {
   }
 
   private updatePage(): void {
-    const replay = this.app.replay !== null;
+    const replay = this.app.inPast;
     if (this.tabs.chosen === "tree") {
       this.tree.update();
       this.properties.update();
@@ -163,10 +165,14 @@ class Inspector implements Panel {
   }
 
   private switchOverlay(overlay: Overlay, on: boolean, tell = false): void {
-    const missing = this.app.replay ? overlay.missing : null;
+    const missing = this.app.inPast ? overlay.missing : null;
     if (missing !== null) return this.app.toast(missing, "bad");
     overlay.on = on;
     if (tell) this.app.toast(`${overlay.title} ${on ? "shown" : "hidden"}`);
+  }
+
+  private hideOverlays(): void {
+    for (const overlay of this.overlays.overlays) if (overlay.missing !== null) overlay.on = false;
   }
 
   private switchDrawings(on: boolean, tell = false): void {

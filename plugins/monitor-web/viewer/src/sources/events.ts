@@ -7,6 +7,10 @@ export function takeEntries(environment: Environment, entries: Entry[], full: bo
   for (const [name, ...values] of entries) if (!kOnce.has(name)) environment.set(name, values.length === 1 ? values[0]! : values);
 }
 
+export function isEntry(from: unknown): from is Entry {
+  return Array.isArray(from) && typeof from[0] === "string";
+}
+
 /// Entries that are events, not state.
 const kOnce = new Set(["foul", "messages"]);
 

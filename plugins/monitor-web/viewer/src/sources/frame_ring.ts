@@ -26,6 +26,12 @@ export class FrameRing {
     this.prepared = -1;
   }
 
+  /// Makes show() write the scene again, even if the time is the same.
+  again(): void {
+    this.prepared = -1;
+    this.share = -1;
+  }
+
   get empty(): boolean {
     return this.count === 0;
   }

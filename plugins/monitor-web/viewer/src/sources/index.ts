@@ -1,3 +1,4 @@
+import type { ReplaySource } from "../model";
 import { Live } from "./live";
 import { indexLog } from "./log";
 import { Replay } from "./replay";
@@ -27,6 +28,16 @@ export async function openReplay(data: Blob | Response | string, name = "the log
     if (next < 0) throw new Error(replay.error ?? `${name} holds no whole scene: all full messages, (RSG 0 1), are damaged.`);
     index.damaged += index.records.splice(0, next).length;
   }
+}
+
+/// Opens a recording of the host or a log of a monitor, as openReplay.
+export async function openMatch(data: Blob, name: string, progress: (share: number) => void): Promise<ReplaySource> {
+  const head = new Uint8Array(await data.slice(0, 5).arrayBuffer());
+  const isRecording = String.fromCharCode(...head.subarray(1)) === "MCAP" && head[0] === 0x89;
+  if (!isRecording) return openReplay(data, name, progress);
+  // The reader of recordings is loaded only when it is needed.
+  const { openRecording } = await import("./recording");
+  return openRecording(data, name, progress);
 }
 
 async function toBlob(data: Blob | Response | string, name: string): Promise<Blob> {

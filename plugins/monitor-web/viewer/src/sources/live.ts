@@ -2,28 +2,40 @@ import type { Drawing, GameEvent, LiveSource, Robot, Status, World } from "../mo
 import type { Entry } from "../codec/record";
 import { FrameDecoder } from "../codec/frames";
 import { Connection, type Connect, connectSocket } from "./connection";
-import { EventReader, modeName, takeEntries, teamName } from "./events";
+import { EventReader, isEntry, modeName, takeEntries, teamName } from "./events";
 import { FrameRing } from "./frame_ring";
+import { HostTape } from "./host_tape";
 import { LiveClock } from "./live_clock";
+import { Mirror } from "./mirror";
+import { Past } from "./past";
+import { OutlineReader } from "./outline";
+import { isPast } from "./piece_message";
 import { Poses } from "./poses";
 import { Questions } from "./questions";
 import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
 import { isRecord, readScene } from "./scene_message";
 import { emptyWorld, showScene } from "./world";
 
-/// The running match. Frames are shown with a small delay, so that motion is smooth; everything else is shown when it
-/// arrives. Invalid data closes the connection, and the next connection begins with a complete scene, so no message of
+/// The running match, and its last minutes. Frames are shown with a small delay, so that motion is smooth; everything
+/// else is shown when it arrives, unless the past is shown. Invalid data closes the connection, and the next connection begins with a complete scene, so no message of
 /// a host causes an error in the viewer.
 
 const kMostEvents = 1000;
 
 export class Live implements LiveSource {
   readonly kind = "live";
+  /// What is shown: the present, or an instant of the past.
   readonly world: World = emptyWorld();
+  past: Past | null = null;
   status: Status | null = null;
   referee = false;
   onchange: (() => void) | null = null;
 
+  private readonly present: World = emptyWorld();
+  private readonly mirror = new Mirror(this.world);
+  private readonly tape = new HostTape((request) => this.ask(request), () => this.present.events, (scene) => this.nameRobotsOf(scene));
+  /// Simulated time that the host keeps [s].
+  private kept = 0;
   private readonly connection: Connection;
   private readonly questions: Questions;
   private readonly decoder = new FrameDecoder();
@@ -62,14 +74,26 @@ export class Live implements LiveSource {
   }
 
   update(now: number): void {
+    if (this.past && !this.past.following) this.past.update(now);
+    else this.updatePresent(now);
+    this.show();
+  }
+
+  private updatePresent(now: number): void {
     if (this.ring.empty) return;
-    const { world } = this;
+    const { present } = this;
     const time = this.clock.at(now);
-    const shown = this.ring.show(time, this.scene, world.local);
+    const shown = this.ring.show(time, this.scene, present.local);
     if (!shown) return;
-    world.time = time;
-    for (let i = 0; i < world.nodes.length; ++i) if (world.nodes[i]!.kind === "mesh") world.nodes[i]!.visible = shown.visible[i] === 1;
-    ++world.versions.frame;
+    present.time = time;
+    for (let i = 0; i < present.nodes.length; ++i) if (present.nodes[i]!.kind === "mesh") present.nodes[i]!.visible = shown.visible[i] === 1;
+    ++present.versions.frame;
+  }
+
+  /// Until the past is loaded, the last picture stays.
+  private show(): void {
+    if (!this.past || this.past.following) this.mirror.show(this.present);
+    else if (this.past.shown) this.mirror.show(this.past.shown);
   }
 
   close(): void {
@@ -107,9 +131,10 @@ export class Live implements LiveSource {
   setDrawings(on: boolean): void {
     this.drawings = on;
     this.connection.send({ do: "drawings", on });
-    if (on || this.world.drawings.size === 0) return;
-    this.world.drawings.clear();
-    ++this.world.versions.drawings;
+    if (on || this.present.drawings.size === 0) return;
+    this.present.drawings.clear();
+    ++this.present.versions.drawings;
+    this.show();
   }
 
   private opened(): void {
@@ -124,6 +149,7 @@ export class Live implements LiveSource {
     this.referee = false;
     this.status = null;
     this.decoder.setScene(-1, this.scene.transforms);
+    this.decoder.time = 0;
     this.questions.lost();
     this.onchange?.();
   }
@@ -135,12 +161,15 @@ export class Live implements LiveSource {
     } catch {
       return this.connection.again();
     }
-    if (!isRecord(message) || !this.take(message)) this.connection.again();
+    if (!isRecord(message) || !this.take(message)) return this.connection.again();
+    this.show();
   }
 
   /// Returns false if the message is invalid. Unknown types are ignored: they come from newer hosts.
   private take(message: Record<string, unknown>): boolean {
     switch (message.type) {
+      case "hello":
+        return this.takeHello(message);
       case "scene":
         return this.takeScene(message);
       case "environment":
@@ -163,6 +192,34 @@ export class Live implements LiveSource {
     }
   }
 
+  private takeHello(message: Record<string, unknown>): boolean {
+    this.kept = typeof message.history === "number" ? message.history : 0;
+    this.tape.clear();
+    if (this.kept > 0) this.ask<Record<string, unknown>>({ do: "history" }).then((outline) => this.takeOutline(outline), () => undefined);
+    return true;
+  }
+
+  /// What happened before this viewer came: the events of the timeline.
+  private takeOutline({ from, to, messages }: Record<string, unknown>): void {
+    if (typeof from !== "number" || typeof to !== "number" || !Array.isArray(messages)) return;
+    const outline = new OutlineReader();
+    for (const message of messages) outline.take(message);
+    const { present } = this;
+    present.events = [...outline.events, ...present.events.filter((e) => e.time > to)].slice(-kMostEvents);
+    ++present.versions.events;
+    this.tape.start = from;
+    this.tape.end = Math.max(to, this.decoder.time);
+    this.past ??= new Past(this.world, this.tape, () => this.followed());
+    // Another host, or the same one again much later.
+    if (this.past.time < from || this.past.time > this.tape.end) this.past.follow();
+    this.show();
+  }
+
+  private followed(): void {
+    this.ring.again();
+    this.update(performance.now());
+  }
+
   private takeScene(message: Record<string, unknown>): boolean {
     const read = readScene(message);
     if (!read) return false;
@@ -171,30 +228,33 @@ export class Live implements LiveSource {
     this.poses = read.poses;
     this.decoder.setScene(read.shape, this.scene.transforms);
     this.ring.begin(read.poses);
+    this.tape.addScene(read.shape, this.scene, read.poses);
     this.nameRobots();
-    showScene(this.world, this.scene);
-    for (const i of this.scene.transforms) read.poses.getMatrix(i, this.world.local, 16 * i);
+    showScene(this.present, this.scene);
+    for (const i of this.scene.transforms) read.poses.getMatrix(i, this.present.local, 16 * i);
     for (let i = 0; i < read.nodes.length; ++i) if (read.nodes[i]!.kind === "mesh") this.scene.nodes[i]!.visible = read.poses.visible[i] === 1;
-    ++this.world.versions.frame;
+    ++this.present.versions.frame;
     return true;
   }
 
   private frame(bytes: Uint8Array): void {
+    if (isPast(bytes)) return this.tape.take(bytes) ? undefined : this.connection.again();
     const decoded = this.decoder.decode(bytes, this.poses);
     if (decoded === "broken") return this.connection.again();
     if (decoded !== "shown") return;
     this.connection.proven();
     this.clock.arrived(this.decoder.time, performance.now());
     this.ring.take(this.decoder.time, this.poses, this.free);
+    this.tape.end = this.decoder.time;
+    this.tape.start = Math.min(this.tape.end, Math.max(this.tape.start, this.tape.end - this.kept));
   }
 
   private takeEnvironment(message: Record<string, unknown>): boolean {
-    const { world } = this;
     if (!Array.isArray(message.entries) || !message.entries.every(isEntry)) return false;
     const entries = message.entries as Entry[];
     const time = Number(message.time) || 0;
     // The host was restarted.
-    if (message.full === true && time < world.time - 1) this.forget();
+    if (message.full === true && time < this.present.time - 1) this.forget();
     if (message.full === true) this.told = new Set();
     for (const [name] of entries) this.told?.add(name);
     this.change(entries, time, message.full === true);
@@ -203,25 +263,25 @@ export class Live implements LiveSource {
   }
 
   private change(entries: Entry[], time: number, full: boolean): void {
-    const { world } = this;
-    takeEntries(world.environment, entries, full);
-    ++world.versions.environment;
-    this.addEvents(this.events.take(world.environment, entries, time));
-    this.free = /^(playon|pass)/i.test(modeName(world.environment));
+    const { present } = this;
+    takeEntries(present.environment, entries, full);
+    ++present.versions.environment;
+    this.addEvents(this.events.take(present.environment, entries, time));
+    this.free = /^(playon|pass)/i.test(modeName(present.environment));
     if (entries.some(([name]) => name === "team_left" || name === "team_right")) this.nameRobots();
   }
 
   /// A game without a monitor item reports mode, score and teams only in its status.
   private fillIn(time: number): void {
-    const { told, words, world } = this;
+    const { told, words, present } = this;
     if (!told || words.length === 0) return;
-    const entries = [...words, ["time", time] as Entry].filter(([name, value]) => !told.has(name) && world.environment.get(name) !== value);
+    const entries = [...words, ["time", time] as Entry].filter(([name, value]) => !told.has(name) && present.environment.get(name) !== value);
     if (entries.length > 0) this.change(entries, time, false);
   }
 
   private takeEvent(message: Record<string, unknown>): boolean {
     if (!isEntry(message.entry)) return false;
-    this.addEvents(this.events.take(this.world.environment, [message.entry], Number(message.time) || 0));
+    this.addEvents(this.events.take(this.present.environment, [message.entry], Number(message.time) || 0));
     return true;
   }
 
@@ -246,25 +306,25 @@ export class Live implements LiveSource {
   private takeDrawings(message: Record<string, unknown>): boolean {
     if (!isRecord(message.sets)) return false;
     for (const [name, set] of Object.entries(message.sets)) {
-      if (set === null) this.world.drawings.delete(name);
-      else if (Array.isArray(set)) this.world.drawings.set(name, set as Drawing[]);
+      if (set === null) this.present.drawings.delete(name);
+      else if (Array.isArray(set)) this.present.drawings.set(name, set as Drawing[]);
       else return false;
     }
-    ++this.world.versions.drawings;
+    ++this.present.versions.drawings;
     return true;
   }
 
   private addEvents(events: GameEvent[]): void {
     if (events.length === 0) return;
-    this.world.events = [...this.world.events, ...events].slice(-kMostEvents);
-    ++this.world.versions.events;
+    this.present.events = [...this.present.events, ...events].slice(-kMostEvents);
+    ++this.present.versions.events;
   }
 
   private forget(): void {
     this.events = new EventReader();
     this.clock.reset();
-    this.world.events = [];
-    ++this.world.versions.events;
+    this.present.events = [];
+    ++this.present.versions.events;
   }
 
   private loggedIn(ok: boolean): void {
@@ -279,10 +339,18 @@ export class Live implements LiveSource {
 
   /// Completes the robots with data of the host, which also knows robots without a visible number.
   private nameRobots(): void {
+    for (const scene of new Set([this.scene, ...this.tape.sceneList])) this.nameRobotsOf(scene);
+    if (this.present.nodes !== this.scene.nodes || this.present.robots === this.scene.robots) return;
+    this.present.robots = this.scene.robots;
+    ++this.present.versions.scene;
+  }
+
+  private nameRobotsOf(scene: Scene): void {
     const agents = new Map(this.status?.agents.map((a) => [a.path, a]));
-    const teams = { left: teamName(this.world.environment, "left"), right: teamName(this.world.environment, "right") };
+    const { environment } = this.present;
+    const teams = { left: teamName(environment, "left"), right: teamName(environment, "right") };
     let changed = false;
-    const robots = this.scene.robots.map((robot): Robot => {
+    const robots = scene.robots.map((robot): Robot => {
       const agent = agents.get(robot.path ?? "");
       if (!agent || !(agent.number > 0)) return robot;
       const side = agent.team === teams.left ? "left" : agent.team === teams.right ? "right" : robot.side;
@@ -290,11 +358,7 @@ export class Live implements LiveSource {
       changed = true;
       return { ...robot, side, number: agent.number, key: `${side}:${agent.number}` };
     });
-    if (!changed || new Set(robots.map((r) => r.key)).size < robots.length) return;
-    this.scene.robots = robots;
-    if (this.world.nodes !== this.scene.nodes) return;
-    this.world.robots = robots;
-    ++this.world.versions.scene;
+    if (changed && new Set(robots.map((r) => r.key)).size === robots.length) scene.robots = robots;
   }
 }
 
@@ -307,8 +371,4 @@ function wordsOf({ playMode, score, teams }: Record<string, unknown>): Entry[] {
     if (Array.isArray(teams) && typeof teams[i] === "string") words.push([`team_${side}`, teams[i]]);
   });
   return words;
-}
-
-function isEntry(from: unknown): from is Entry {
-  return Array.isArray(from) && typeof from[0] === "string";
 }

@@ -87,6 +87,11 @@ export class Replay implements ReplaySource {
     return this.passedOver;
   }
 
+  get lacks(): string | null {
+    if (this.passedOver === 0) return null;
+    return this.passedOver === 1 ? "A damaged line of the log is left out." : `${this.passedOver} damaged lines of the log are left out.`;
+  }
+
   /// True while the requested time is not shown yet.
   get busy(): boolean {
     return this.late && !this.pages.error;
@@ -94,6 +99,14 @@ export class Replay implements ReplaySource {
 
   get error(): string | null {
     return this.pages.error;
+  }
+
+  get following(): boolean {
+    return false;
+  }
+
+  get time(): number {
+    return this.position;
   }
 
   get playing(): boolean {

@@ -1,5 +1,5 @@
 /// The interface of the application for its panels.
-import type { LiveSource, ReplaySource, Source, World } from "../model";
+import type { LiveSource, Playback, ReplaySource, Source, World } from "../model";
 import type { CameraMode, Quality, Stage, Theme } from "../view/stage";
 
 export type { CameraMode, Quality, Stage, Theme };
@@ -23,6 +23,10 @@ export interface App {
   readonly source: Source;
   readonly live: LiveSource | null;
   readonly replay: ReplaySource | null;
+  /// What the timeline controls; null: a running match whose host keeps nothing.
+  readonly playback: Playback | null;
+  /// True unless the newest instant of a running match is shown.
+  readonly inPast: boolean;
   readonly world: World;
   readonly stage: Stage;
   readonly selection: Selection | null;

@@ -1,6 +1,6 @@
 /// The whole page: connects the stage, the panels and the source, and runs the main loop.
 import { mountInspector } from "../inspect";
-import type { LiveSource, ReplaySource, Robot, Source, World } from "../model";
+import type { LiveSource, Playback, ReplaySource, Robot, Source, World } from "../model";
 import { withoutLog, withoutToken, wishesOf, type Wishes } from "./address";
 import { Stage } from "../view/stage";
 import type { App, AppEvent, CameraMode, Panel, Selection, Theme, Tone } from "./app";
@@ -41,7 +41,7 @@ export class Application implements App {
   readonly keyboard = new Keyboard();
   readonly showing: Showing;
   readonly side = new Side(() => this.panelChanged());
-  readonly timeline = new Timeline(() => this.showing.watchLive());
+  readonly timeline = new Timeline(() => this.backToLive());
   readonly help = new Help(this.keyboard);
   readonly openings = new Openings((file) => void this.showing.openLog(file));
   readonly picker: FieldPicker;
@@ -127,6 +127,14 @@ export class Application implements App {
     return this.showing.replay;
   }
 
+  get playback(): Playback | null {
+    return this.replay ?? this.live?.past ?? null;
+  }
+
+  get inPast(): boolean {
+    return this.replay !== null || this.live?.past?.following === false;
+  }
+
   get world(): World {
     return this.showing.source.world;
   }
@@ -168,6 +176,12 @@ export class Application implements App {
     this.toasts.show(text, tone);
   }
 
+  /// Shows the running match, or its newest instant.
+  backToLive(): void {
+    if (this.live) this.live.past?.follow();
+    else this.showing.watchLive();
+  }
+
   setCamera(mode: CameraMode): void {
     this.stage.camera.mode = mode;
     this.appearance.keepView(mode);
@@ -206,6 +220,7 @@ export class Application implements App {
     this.scoreboard.update(this.world);
     this.followTeams();
     this.statusLine.update(this);
+    this.timeline.setPlayback(this.playback);
     this.timeline.update();
     this.tellEvents();
     this.followScene();
@@ -260,7 +275,8 @@ export class Application implements App {
     tellWish(this.live);
     // so that reloading shows it again
     if (this.live) history.replaceState(null, "", withoutLog(location.href));
-    this.timeline.setReplay(this.replay);
+    this.timeline.setPlayback(this.playback);
+    if (this.replay?.lacks) this.toast(this.replay.lacks, "bad");
     this.select(null);
     this.emit("source");
   }

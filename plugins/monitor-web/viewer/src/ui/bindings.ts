@@ -15,7 +15,7 @@ const kPanelKeys: readonly [string, PanelName, string][] = [
 ];
 
 export function bindKeys(app: Application): void {
-  app.keyboard.bind(...looks(app), ...cameraHelp(), ...panels(app), ...robots(app), ...replay(app), ...referee(app));
+  app.keyboard.bind(...looks(app), ...cameraHelp(), ...panels(app), ...robots(app), ...playback(app), ...referee(app));
 }
 
 function looks(app: Application): Binding[] {
@@ -85,12 +85,12 @@ function robots(app: Application): Binding[] {
   ];
 }
 
-function replay(app: Application): Binding[] {
+function playback(app: Application): Binding[] {
   const { timeline } = app;
-  const when = () => app.replay !== null;
-  const line = (combo: string, title: string, run: () => void): Binding => ({ combo, title, group: "Replay", run, when });
+  const when = () => app.playback !== null;
+  const line = (combo: string, title: string, run: () => void): Binding => ({ combo, title, group: "Timeline", run, when });
   const jump = (direction: 1 | -1) => {
-    const event = app.replay && neighbour(app.replay.timeline, app.replay.world.time, direction);
+    const event = app.playback && neighbour(app.playback.timeline, app.playback.time, direction);
     if (event) timeline.seek(event.time);
   };
   return [
@@ -103,8 +103,8 @@ function replay(app: Application): Binding[] {
     line(".", "One record on", () => timeline.step(1)),
     line("[", "Slower", () => timeline.faster(-1)),
     line("]", "Faster", () => timeline.faster(1)),
-    line("home", "To the start", () => timeline.seek(app.replay?.start ?? 0)),
-    line("end", "To the end", () => timeline.seek(app.replay?.end ?? 0)),
+    line("home", "To the start", () => timeline.seek(app.playback?.start ?? 0)),
+    line("end", "To the end; of a running match: live", () => timeline.seek(app.playback?.end ?? 0)),
   ];
 }
 

@@ -10,23 +10,20 @@ export class EventsPanel {
   private readonly list = h("div", { "data-testid": "event-list" });
   private readonly empty = h("p", { class: "empty" }, "Nothing happened yet. Goals, fouls and play modes are listed here.");
   private seen: unknown = null;
-  private version = -1;
 
   constructor(container: HTMLElement, private readonly app: App, private readonly go: (event: GameEvent) => void) {
     container.append(this.empty, this.list);
   }
 
   update(): void {
-    const { replay, world } = this.app;
-    const events = replay ? replay.timeline : world.events;
-    // the list of a replay is complete from the start
-    const version = replay ? 0 : world.versions.events;
-    if (this.seen === world && this.version === version) return;
-    this.seen = world;
-    this.version = version;
+    const { replay, playback, world } = this.app;
+    const events = playback ? playback.timeline : world.events;
+    const start = playback?.start ?? 0;
+    if (this.seen === events) return;
+    this.seen = events;
     setHidden(this.empty, events.length > 0);
     const newest = replay ? events.slice(0, kMost) : events.slice(-kMost).reverse();
-    this.list.replaceChildren(...newest.map((e) => this.row(e, replay !== null)));
+    this.list.replaceChildren(...newest.map((e) => this.row(e, playback !== null && e.time >= start)));
   }
 
   private row(event: GameEvent, seekable: boolean): HTMLElement {

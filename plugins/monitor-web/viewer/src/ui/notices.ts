@@ -22,7 +22,7 @@ export function noticeOf(showing: Showing, waited: number, host: string, opening
   if (showing.failure) return { ...showing.failure, share: null, actions: failed(showing, open) };
   if (showing.source.world.nodes.length > 0 || !showing.live || waited < kPatience) return null;
   if (showing.live.state === "open") return { title: "Waiting for the match", words: "The host has not sent a scene yet.", share: null, actions: [open] };
-  const words = `There is no answer from ${host}. The page tries again by itself. A recorded match can be watched without a host: drop its log file here.`;
+  const words = `There is no answer from ${host}. The page tries again by itself. A recorded match can be watched without a host: drop its log or recording here.`;
   return { title: "No host", words, share: null, actions: [{ ...open, main: true }] };
 }
 

@@ -1,9 +1,9 @@
-/// Ways to open a log: file dialog, drag and drop, or address.
+/// Ways to open a log or a recording: file dialog, drag and drop, or address.
 import { h } from "./dom";
 
 export class Openings {
-  private readonly input = h("input", { type: "file", class: "unseen", "data-testid": "file-input", tabindex: "-1", "aria-label": "Log file", accept: ".log,.gz,.txt,text/plain,application/gzip" });
-  private readonly zone = h("div", { class: "drop", "data-testid": "drop-zone", hidden: true }, "Drop the log here");
+  private readonly input = h("input", { type: "file", class: "unseen", "data-testid": "file-input", tabindex: "-1", "aria-label": "Log or recording", accept: ".log,.gz,.txt,.mcap,text/plain,application/gzip" });
+  private readonly zone = h("div", { class: "drop", "data-testid": "drop-zone", hidden: true }, "Drop the log or recording here");
   readonly elements = [this.input, this.zone];
 
   constructor(opened: (file: File) => void) {

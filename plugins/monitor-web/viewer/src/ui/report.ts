@@ -18,10 +18,12 @@ export interface Report {
   path: string | null;
   ball: Point | null;
   time: number;
-  /// Time range of the replay; 0 and 0 in a live match.
+  /// Time range of the timeline; 0 and 0 without one.
   start: number;
   end: number;
   playing: boolean;
+  /// The newest instant of a running match is shown.
+  following: boolean;
   speed: number;
   /// Number of pictures drawn since the page was opened.
   frames: number;
@@ -41,7 +43,7 @@ export interface Spark {
 }
 
 export function reportOf(app: Application): Report {
-  const { world, replay } = app;
+  const { world, playback } = app;
   return {
     source: app.source.kind,
     connection: connectionOf(app),
@@ -51,10 +53,11 @@ export function reportOf(app: Application): Report {
     path: app.selection?.path ?? null,
     ball: world.ball >= 0 ? placeOf(world, world.ball) : null,
     time: world.time,
-    start: replay?.start ?? 0,
-    end: replay?.end ?? 0,
-    playing: replay?.playing ?? false,
-    speed: replay?.speed ?? 1,
+    start: playback?.start ?? 0,
+    end: playback?.end ?? 0,
+    playing: playback?.playing ?? false,
+    following: !app.inPast,
+    speed: playback?.speed ?? 1,
     frames: app.frames,
     camera: app.stage.camera.mode,
     quality: app.stage.quality,

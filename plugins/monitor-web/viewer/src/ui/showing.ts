@@ -1,7 +1,7 @@
-/// Manages the source that is shown: the live match or an opened log, with the progress of opening or the reason for a
+/// Manages the source that is shown: the live match or an opened log or recording, with the progress of opening or the reason for a
 /// failure.
 import type { LiveSource, ReplaySource, Source } from "../model";
-import { openLive, openReplay } from "../sources";
+import { openLive, openMatch } from "../sources";
 import { emptyWorld } from "../sources/world";
 import { fileNameOf, streamOf } from "./address";
 import { fetchedLog, unpackedFile } from "./logs";
@@ -51,7 +51,7 @@ export class Showing {
       // reading is half of the progress, indexing the other half
       const reading = (share: number) => heard(share / 2);
       const log = typeof from === "string" ? await fetchedLog(from, reading) : await unpackedFile(from, reading);
-      const replay = await openReplay(log, name, (share) => heard(0.5 + share / 2));
+      const replay = await openMatch(log, name, (share) => heard(0.5 + share / 2));
       if (turn !== this.turn) return replay.close();
       if (wishes.at !== null) replay.seek(wishes.at);
       replay.playing = !wishes.paused;

@@ -1,5 +1,5 @@
-/// The bar below a replay: current time, event marks and playback buttons.
-import type { GameEvent, ReplaySource } from "../model";
+/// The bar below a recording or a running match: current time, event marks and playback buttons.
+import type { GameEvent, Playback } from "../model";
 import { h, setAttribute, setHidden, setText } from "./dom";
 import { clock, speed, spokenClock } from "./format";
 import { changeIcon, icon, type IconName } from "./icons";
@@ -31,11 +31,16 @@ export class Timeline {
   );
   readonly element: HTMLElement;
 
-  private replay: ReplaySource | null = null;
+  private playback: Playback | null = null;
   private seen: readonly GameEvent[] | null = null;
+  private names: string[] = [];
   private dragging = false;
   private wanted: number | null = null;
   private width = 0;
+  /// Range of the bar when it was drawn [s].
+  private from = NaN;
+  private to = NaN;
+  private readonly live: HTMLButtonElement;
 
   constructor(backToLive: () => void) {
     this.play.classList.add("play");
@@ -46,14 +51,14 @@ export class Timeline {
       this.play,
       this.button("step-forward", "One record forward", ".", "forward", () => this.step(1)),
     );
-    const live = h("button", { type: "button", class: "button", "data-testid": "back-to-live", "aria-label": "Back to the live match", title: "Back to the live match", onclick: backToLive }, icon("live"), h("span", { class: "words" }, "Live"));
+    this.live = h("button", { type: "button", class: "button live", "data-testid": "back-to-live", "aria-label": "Back to the live match", title: "Back to the live match", onclick: backToLive }, icon("live"), h("span", { class: "words" }, "Live"));
     this.element = h(
       "section",
-      { class: "timeline card", "data-testid": "timeline", "aria-label": "Replay", hidden: true },
+      { class: "timeline card", "data-testid": "timeline", "aria-label": "Timeline", hidden: true },
       buttons,
       this.times,
       this.bar,
-      h("div", { class: "buttons last" }, this.speeds, live),
+      h("div", { class: "buttons last" }, this.speeds, this.live),
     );
     this.hearPointer();
     this.track.addEventListener("keydown", (event) => this.pageKeys(event));
@@ -61,66 +66,75 @@ export class Timeline {
     new ResizeObserver(() => this.measure()).observe(this.bar);
   }
 
-  /// null: no replay, no timeline.
-  setReplay(replay: ReplaySource | null): void {
-    this.replay = replay;
+  /// null: nothing that can be played, no timeline.
+  setPlayback(playback: Playback | null): void {
+    if (this.playback === playback) return;
+    this.playback = playback;
     this.seen = null;
     this.wanted = null;
-    setHidden(this.element, replay === null);
-    if (!replay) return;
-    setAttribute(this.track, "aria-valuemin", String(replay.start));
-    setAttribute(this.track, "aria-valuemax", String(replay.end));
-    this.measure();
+    setHidden(this.element, playback === null);
+    if (playback) this.measure();
   }
 
   togglePlaying(): void {
-    const { replay } = this;
-    if (!replay) return;
-    if (!replay.playing && replay.world.time >= replay.end) replay.seek(replay.start);
-    replay.playing = !replay.playing;
+    const { playback } = this;
+    if (!playback) return;
+    const over = playback.speed < 0 ? playback.time <= playback.start : playback.time >= playback.end;
+    if (!playback.playing && over) playback.seek(playback.speed < 0 ? playback.end : playback.start);
+    playback.playing = !playback.playing;
     this.update();
   }
 
   step(direction: 1 | -1): void {
-    this.replay?.step(direction);
+    this.playback?.step(direction);
     this.update();
   }
 
   seekBy(seconds: number): void {
-    if (this.replay) this.seek((this.wanted ?? this.replay.world.time) + seconds);
+    if (this.playback) this.seek((this.wanted ?? this.playback.time) + seconds);
   }
 
   seek(time: number): void {
-    if (this.replay) this.wanted = Math.min(this.replay.end, Math.max(this.replay.start, time));
+    if (this.playback) this.wanted = Math.min(this.playback.end, Math.max(this.playback.start, time));
   }
 
   faster(direction: 1 | -1): void {
-    if (this.replay) this.setSpeed(otherSpeed(this.replay.speed, direction));
+    if (this.playback) this.setSpeed(otherSpeed(this.playback.speed, direction));
   }
 
   /// Call it once per picture, before drawing. Dragging requests many times; only the last one is used.
   seekWanted(): void {
-    if (this.wanted === null || !this.replay) return;
-    this.replay.seek(this.wanted);
+    if (this.wanted === null || !this.playback) return;
+    this.playback.seek(this.wanted);
     this.wanted = null;
   }
 
   /// Call it ten times a second.
   update(): void {
-    const { replay } = this;
-    if (!replay) return;
-    if (replay.timeline !== this.seen) this.draw();
-    const { time } = replay.world;
-    const share = shareOf(time, replay.start, replay.end);
+    const { playback } = this;
+    if (!playback) return;
+    if (playback.timeline !== this.seen || this.moved()) this.draw();
+    const { time, following } = playback;
+    const share = shareOf(time, playback.start, playback.end);
     this.filled.style.transform = `scaleX(${share.toFixed(4)})`;
     this.knob.style.transform = `translateX(${(share * 100).toFixed(2)}%)`;
-    setText(this.times, `${clock(time)} / ${clock(replay.end)}`);
+    setText(this.times, `${clock(time)} / ${clock(playback.end)}`);
     setAttribute(this.track, "aria-valuenow", time.toFixed(2));
-    setAttribute(this.track, "aria-valuetext", `${spokenClock(time)} of ${spokenClock(replay.end)}`);
-    setAttribute(this.play, "aria-pressed", String(replay.playing));
-    setAttribute(this.play, "aria-label", replay.playing ? "Pause" : "Play");
-    changeIcon(this.playIcon, replay.playing ? "pause" : "play");
-    this.showSpeed(replay.speed);
+    setAttribute(this.track, "aria-valuetext", `${spokenClock(time)} of ${spokenClock(playback.end)}`);
+    setAttribute(this.play, "aria-pressed", String(playback.playing));
+    setAttribute(this.play, "aria-label", playback.playing ? "Pause" : "Play");
+    changeIcon(this.playIcon, playback.playing ? "pause" : "play");
+    setAttribute(this.track, "aria-valuemin", playback.start.toFixed(2));
+    setAttribute(this.track, "aria-valuemax", playback.end.toFixed(2));
+    setAttribute(this.live, "aria-pressed", String(following));
+    this.showSpeed(playback.speed);
+  }
+
+  /// True if the range of a running match has moved by a pixel since it was drawn.
+  private moved(): boolean {
+    const { start, end } = this.playback!;
+    const pixel = (end - start) / Math.max(1, this.width);
+    return !(Math.abs(start - this.from) < pixel && Math.abs(end - this.to) < pixel);
   }
 
   private button(testid: string, name: string, key: string, picture: IconName, run: () => void, svg = icon(picture)): HTMLButtonElement {
@@ -128,7 +142,7 @@ export class Timeline {
   }
 
   private setSpeed(value: number): void {
-    if (this.replay) this.replay.speed = value;
+    if (this.playback) this.playback.speed = value;
     this.update();
   }
 
@@ -143,23 +157,31 @@ export class Timeline {
     const width = this.bar.clientWidth;
     if (width === this.width && this.seen) return;
     this.width = width;
-    if (this.replay && width > 0) this.draw();
+    if (this.playback && width > 0) this.draw();
   }
 
   private draw(): void {
-    const { replay } = this;
-    if (!replay || this.width === 0) return;
-    this.seen = replay.timeline;
-    const { start, end, timeline } = replay;
+    const { playback } = this;
+    if (!playback || this.width === 0) return;
+    this.seen = playback.timeline;
+    const { start, end } = playback;
+    this.from = start;
+    this.to = end;
+    const timeline = playback.timeline.filter((e) => e.time >= start);
     const at = (time: number) => `left: ${(shareOf(time, start, end) * 100).toFixed(3)}%`;
     this.scale.replaceChildren(...ticksOf(start, end, this.width / kTickGap).map((t) => h("span", { class: "tick number", style: at(t) }, clock(t))));
     const marks = marksOf(timeline, start, end, this.width, kMarkGap);
-    this.marks.replaceChildren(...marks.map((mark, i) => this.mark(mark, i === 0, at(mark.time))));
+    const names = marks.map((m) => [m.kind, m.side, m.time, ...m.texts].join());
+    const same = names.length > 0 && names.join("\n") === this.names.join("\n");
+    // Marks that only move keep the focus.
+    if (same) marks.forEach((mark, i) => this.marks.children[i]!.setAttribute("style", at(mark.time)));
+    else this.marks.replaceChildren(...marks.map((mark, i) => this.mark(mark, i === 0, at(mark.time))));
+    this.names = names;
   }
 
   private mark(mark: Mark, first: boolean, style: string): HTMLElement {
     const text = [clock(mark.time), ...mark.texts].join("\n");
-    const show = () => this.showTip(mark.share, text);
+    const show = () => this.showTip(this.playback ? shareOf(mark.time, this.playback.start, this.playback.end) : 0, text);
     return h("button", {
       type: "button",
       class: "mark",
@@ -196,7 +218,7 @@ export class Timeline {
       const box = this.track.getBoundingClientRect();
       return Math.min(1, Math.max(0, (event.clientX - box.left) / Math.max(1, box.width)));
     };
-    const at = (event: PointerEvent) => timeAt(shareAt(event), this.replay?.start ?? 0, this.replay?.end ?? 0);
+    const at = (event: PointerEvent) => timeAt(shareAt(event), this.playback?.start ?? 0, this.playback?.end ?? 0);
     this.track.addEventListener("pointerdown", (event) => {
       if (event.button !== 0) return;
       this.track.setPointerCapture(event.pointerId);

@@ -57,6 +57,8 @@ export function materialColour(name: string | undefined, teams = usualTeams): Rg
   if (name === undefined) return materials.matGrey!;
   const known = materials[name];
   if (known) return known;
+  const coded = /^rgb([0-9a-f]{6})$/.exec(name); // what importers make of a file's colours
+  if (coded) return rgb(parseInt(coded[1]!, 16));
   if (name.startsWith("matLeft")) return teams.left;
   if (name.startsWith("matRight")) return teams.right;
   if (name.startsWith("matNum")) return materials.matNum!;

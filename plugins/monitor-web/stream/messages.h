@@ -15,8 +15,9 @@ inline constexpr JsonStyle kWebJson{.ascii = true, .notFinite = "0"};
 /// Writes an element: lists as arrays, texts that look like numbers as numbers.
 void writeElement(JsonWriter& json, const Element& element);
 
-/// `{"type":"hello",...}`. `step`: simulated seconds per cycle; `rate`: default number of frames a second.
-std::string helloMessage(double step, double rate);
+/// `{"type":"hello",...}`. `step`: simulated seconds per cycle; `rate`: default number of frames a second; `history`:
+/// simulated seconds that the host keeps.
+std::string helloMessage(double step, double rate, double history);
 /// `{"type":"scene",...}` with the matrices of the snapshot. `snapshot.scene` must be set; `shape`: its number.
 std::string sceneMessage(const Snapshot& snapshot, std::uint32_t shape);
 /// `{"type":"environment",...,"full":true}`: all entries except events.

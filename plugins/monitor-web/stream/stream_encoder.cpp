@@ -9,8 +9,6 @@ namespace spark::web {
 static_assert(std::endian::native == std::endian::little, "frames are little endian");
 
 namespace {
-constexpr std::uint8_t kKey = 1, kDelta = 2;
-
 // Unchanged transforms within a run cost a byte each, a new run two or more: shorter gaps do not end a run.
 constexpr std::size_t kMinGap = 3;
 
@@ -19,11 +17,6 @@ constexpr std::size_t kMinGap = 3;
 constexpr float kHysteresis = 0.75f;
 
 constexpr float kMaxQuantised = 1 << 30;
-
-template <class T>
-void putRaw(std::string& out, T value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 /// Rounds with hysteresis. Keeps the previous value if `exact` is not finite.
 std::int32_t quantum(float exact, std::int32_t before) {
@@ -83,7 +76,7 @@ void StreamEncoder::advance(const Instant& instant) {
   ++serial_;
 }
 
-void StreamEncoder::begin(std::string& out, std::uint8_t kind) const {
+void StreamEncoder::begin(std::string& out, MessageKind kind) const {
   out.clear();
   putRaw(out, kind);
   putRaw(out, static_cast<std::uint8_t>(precision_.position));
@@ -129,14 +122,14 @@ void StreamEncoder::writeVisibility(std::string& out, const std::vector<std::uin
 }
 
 const std::string& StreamEncoder::delta() {
-  begin(delta_, kDelta);
+  begin(delta_, MessageKind::delta);
   writeTransforms(delta_, before_);
   writeVisibility(delta_, toggledNow_);
   return delta_;
 }
 
 const std::string& StreamEncoder::key() {
-  begin(key_, kKey);
+  begin(key_, MessageKind::key);
   writeTransforms(key_, zero_);
   writeVisibility(key_, toggled_);
   return key_;

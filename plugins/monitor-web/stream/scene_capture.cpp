@@ -55,6 +55,7 @@ NodeDescription describeNode(const FrameNode& node) {
     out.scale = node.visual->scale();
     out.materials = node.visual->materials();
   }
+  if (node.visual && node.kind == FrameNode::Kind::light) out.colors = node.visual->lightColors();
   return out;
 }
 
@@ -73,7 +74,12 @@ std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame)
   return scene;
 }
 
-void copyNodes(const MonitorFrame& frame, Snapshot& out) {
+void copyFrame(const NewestFrame& newest, double time, Snapshot& out) {
+  const MonitorFrame& frame = newest.frame;
+  out.shape = frame.shape;
+  out.time = time;
+  out.environment = frame.env;
+  out.keys = newest.keys;
   out.transforms.clear();
   out.visible.resize(frame.nodes.size());
   for (std::size_t i = 0; i < frame.nodes.size(); ++i) {

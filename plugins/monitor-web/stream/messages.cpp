@@ -31,7 +31,9 @@ void writeTransform(JsonWriter& json, const NodeDescription& node) {
 }
 
 void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible) {
-  json.member("kind", "mesh").member("load", node.load);
+  json.member("kind", "mesh");
+  if (node.kind == FrameNode::Kind::singleMaterial) json.member("single", true);
+  json.member("load", node.load);
   json.key("scale").numbers(std::array{node.scale.x(), node.scale.y(), node.scale.z()});
   if (!node.materials.empty()) {
     json.key("materials").beginArray();
@@ -49,7 +51,9 @@ void writeNode(JsonWriter& json, const NodeDescription& node, bool visible) {
       writeTransform(json, node);
       break;
     case FrameNode::Kind::light:
-      json.member("kind", "light");
+      json.member("kind", "light").key("colors").beginArray();
+      for (const Color& c : node.colors) json.numbers(std::array{c.r, c.g, c.b, c.a});
+      json.endArray();
       break;
     case FrameNode::Kind::mesh:
     case FrameNode::Kind::singleMaterial:
@@ -111,11 +115,11 @@ void writeElement(JsonWriter& json, const Element& element) {
   json.endArray();
 }
 
-std::string helloMessage(double step, double rate) {
+std::string helloMessage(double step, double rate, double history) {
   std::string out;
   JsonWriter json(out, kWebJson);
   json.beginObject().member("type", "hello").member("protocol", 1).member("spark", SPARK_VERSION);
-  json.member("step", step).member("rate", rate).endObject();
+  json.member("step", step).member("rate", rate).member("history", history).endObject();
   return out;
 }
 

@@ -13,6 +13,9 @@
 
 namespace spark::web {
 
+/// The first byte of a binary message: frames, and what answers requests for the past.
+enum class MessageKind : std::uint8_t { key = 1, delta = 2, piece = 3, scene = 4 };
+
 /// Quantisation of a stream: a quantum is 2^-bits, in metres for positions and without unit for quaternions.
 struct Precision {
   int position = 0, rotation = 0;
@@ -52,7 +55,7 @@ class StreamEncoder {
   /// Position x y z and quaternion x y z w, in quanta.
   using Quantised = std::array<std::int32_t, 7>;
   Quantised quantise(const Matrix& m, const Quantised& before) const;
-  void begin(std::string& out, std::uint8_t kind) const;
+  void begin(std::string& out, MessageKind kind) const;
   void writeTransforms(std::string& out, const std::vector<Quantised>& before) const;
   void writeVisibility(std::string& out, const std::vector<std::uint32_t>& nodes) const;
 
@@ -66,6 +69,11 @@ class StreamEncoder {
   std::string delta_, key_;
 };
 
+/// Appends the bytes of a number, little endian.
+template <class T>
+void putRaw(std::string& out, T value) {
+  out.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
 /// Appends an unsigned number in LEB128: seven bits a byte, the lowest first.
 void putVarint(std::string& out, std::uint64_t value);
 /// Appends a signed number: zigzag, then LEB128.

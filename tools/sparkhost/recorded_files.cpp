@@ -10,7 +10,7 @@
 
 #include "spark/error.h"
 
-namespace sparkreplay {
+namespace sparkhost {
 
 namespace fs = std::filesystem;
 
@@ -34,8 +34,22 @@ fs::path placeOf(std::string_view name) {
 }
 }  // namespace
 
-RecordedFiles::RecordedFiles(const spark::mcap::Reader& recording) {
-  std::string name = (fs::temp_directory_path() / "sparkreplay-XXXXXX").string();
+namespace {
+/// Copies all files of a folder that `to` has not. Links would lead out of it, which the file server refuses.
+void copyFiles(const fs::path& from, const fs::path& to) {
+  std::error_code ignored;
+  for (const auto& entry : fs::recursive_directory_iterator(from, ignored)) {
+    const fs::path place = to / entry.path().lexically_relative(from);
+    if (entry.is_directory())
+      fs::create_directories(place, ignored);
+    else if (!fs::exists(place))
+      fs::copy_file(entry.path(), place, ignored);
+  }
+}
+}  // namespace
+
+RecordedFiles::RecordedFiles(const spark::mcap::Reader& recording, const fs::path& installed) {
+  std::string name = (fs::temp_directory_path() / "spark-XXXXXX").string();
   if (!::mkdtemp(name.data()))
     throw spark::Error(fmt::format("cannot make a folder {}: {}", name, std::strerror(errno)));
   folder_ = name;
@@ -54,6 +68,12 @@ RecordedFiles::RecordedFiles(const spark::mcap::Reader& recording) {
       lacks_.emplace_back(e.what());
     }
   }
+  if (!fs::is_directory(installed)) return;
+  for (const auto& entry : fs::directory_iterator(fs::canonical(installed)))
+    if (fs::exists(folder_ / entry.path().filename()))
+      copyFiles(fs::canonical(entry.path()), folder_ / entry.path().filename());
+    else
+      fs::create_symlink(fs::canonical(entry.path()), folder_ / entry.path().filename());
 }
 
 RecordedFiles::~RecordedFiles() {
@@ -61,4 +81,4 @@ RecordedFiles::~RecordedFiles() {
   fs::remove_all(folder_, ignored);
 }
 
-}  // namespace sparkreplay
+}  // namespace sparkhost

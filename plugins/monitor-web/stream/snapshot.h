@@ -28,6 +28,7 @@ struct NodeDescription {
   Vec3f scale{1, 1, 1};
   std::vector<std::string> materials;
   bool transparent = false, visible = true;
+  std::array<Color, 3> colors{};  ///< lights: diffuse, ambient, specular
 };
 
 /// The part of a scene that stays the same while MonitorFrame::shape does.

@@ -8,15 +8,15 @@
 
 #include "mcap.h"
 
-namespace sparkreplay {
+namespace sparkhost {
 
 /// A folder with lua/ and scenes/ that exists as long as this object. Configs and scripts are in lua/ by the names by
 /// which they were asked for, without the folder where a name was absolute.
 class RecordedFiles {
  public:
-  /// Writes the attachments of the recording. Those that are damaged, or whose names lead out of the folder, are left
-  /// out. Throws Error if there is no room for them.
-  explicit RecordedFiles(const spark::mcap::Reader& recording);
+  /// Writes the attachments of the recording, and copies of the files of `installed`, a share, which it has not. Those
+  /// that are damaged, or whose names lead out of the folder, are left out. Throws Error if there is no room for them.
+  RecordedFiles(const spark::mcap::Reader& recording, const std::filesystem::path& installed);
   ~RecordedFiles();
   RecordedFiles(const RecordedFiles&) = delete;
   RecordedFiles& operator=(const RecordedFiles&) = delete;
@@ -31,4 +31,4 @@ class RecordedFiles {
   std::vector<std::string> lacks_;
 };
 
-}  // namespace sparkreplay
+}  // namespace sparkhost

@@ -9,7 +9,8 @@ namespace spark::web {
 /// Describes the nodes of a frame: paths, meshes, shapes of colliders. Allocates.
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame);
 
-/// Copies the matrices and visibilities of a frame. Allocates only if there are more nodes than ever before.
-void copyNodes(const MonitorFrame& frame, Snapshot& out);
+/// Copies matrices, visibilities and the environment of a frame, all but its events. Allocates only if there are more
+/// of them than ever before. `time`: simulated [s].
+void copyFrame(const NewestFrame& newest, double time, Snapshot& out);
 
 }  // namespace spark::web

@@ -1,0 +1,41 @@
+#pragma once
+/// \file
+/// Snapshots of a run.
+
+#include <string>
+#include <vector>
+
+#include "api/inputs.h"
+#include "api/phases.h"
+#include "api/snapshots.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Takes and restores snapshots, at /sys/host/snapshots. It is made after all that belongs to the config: what is newer
+/// was made by the run.
+class Snapshots : public Node, public ISnapshots {
+  SPARK_CLASS(Snapshots, Node)
+ public:
+  static void describe(Description<Snapshots>& d);
+  void take(Snapshot& out, bool whole) override;
+  void restore(const Snapshot& snapshot, std::optional<std::uint64_t> seed) override;
+  void load(const std::string& file, double seconds, std::optional<std::uint64_t> seed) override;
+  std::string write(const Snapshot& snapshot) const override;
+  Snapshot read(std::string_view bytes) const override;
+
+  /// Writes a file with a snapshot of now, and the texts that the run was made of. Throws Error if that fails.
+  void save(const std::string& file);
+
+ protected:
+  void onLink() override;
+
+ private:
+  void loadFile(const std::string& file, double seconds) { load(file, seconds, {}); }
+  std::vector<std::string> arguments_;
+  Link<ISimulation> simulation_;
+  Link<IInputTape> tape_;
+};
+
+}  // namespace spark
