@@ -48,7 +48,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   std::uint64_t identity() const override { return 0; }
   engine::JointType jointType() const override { return type; }
   IRigidBody* body(int index) const override { return bodies[index]; }
-  int axes() const override { return 1; }
+  int axes() const override { return count; }
   Vec3 anchor() const override { return Vec3::Zero(); }
   Vec3 axisNow(int) const override { return Vec3::UnitZ(); }
   void setWorldAnchor(const Vec3&) override {}
@@ -82,6 +82,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   double velocity(int axis) const { return parameter(engine::JointParameter::velocity, axis); }
 
   engine::JointType type = engine::JointType::hinge;
+  int count = 1;  ///< of axes
   std::array<IRigidBody*, 2> bodies{};
   std::array<double, 3> angles{}, rates{}, maxSpeeds{};
   std::array<engine::Control, 3> controls{};

@@ -99,15 +99,15 @@ class IDetector {
   virtual void detect(const Model& model, const State& state, PairFilter filter, int perPair, Contacts& out) = 0;
   /// Writes what decides the next detection and is neither in the model nor in the poses. Called between two steps.
   virtual void save(const State&, StateWriter&) const {}
-  /// Reads it again. Called after compile(), before a detection that has all bodies in `state.moved`. Throws Error
-  /// where it does not fit.
-  virtual void load(const Model&, StateReader&) {}
+  /// Reads it again. Called after compile(), when all bodies are loaded, before a detection that has all of them in
+  /// `state.moved`. Throws Error where it does not fit.
+  virtual void load(const Model&, const State&, StateReader&) {}
 };
 
 /// Makes the detectors of worlds.
 class ICollision : public PerWorld<IDetector> {
  public:
-  SPARK_INTERFACE(ICollision, 2);
+  SPARK_INTERFACE(ICollision, 3);
 };
 
 /// Takes the contacts of an engine that finds them within its step (Capabilities::late).
@@ -160,17 +160,21 @@ class ISolver {
 /// What an engine can do. `tests/engines` tests each of them and writes them to docs/engines.md; a world with something
 /// that has no effect is reported in the log.
 struct Capabilities {
-  bool rotation = true;      ///< bodies rotate
-  bool joints = true;        ///< joints have an effect
-  bool loops = true;         ///< joints may close loops of bodies, and angular motors may drive other joints
-  bool jointForces = true;   ///< joints measure their load (Joint::wantsFeedback)
-  bool armature = false;     ///< joints have the inertia of their rotors (JointAxis::armature)
-  bool sleeps = true;        ///< bodies at rest fall asleep; otherwise it steps all bodies always
-  bool surfaces = true;      ///< contacts have bounce, slip, and friction as a force, each its own
-  bool restores = true;      ///< a restored world continues bit for bit, also with another solver of the engine
-  bool parts = true;         ///< it can step some islands alone (Step::only), as another engine's deferred engine
-  bool detects = false;      ///< it finds contacts itself, before the step (ISolver::detector())
-  bool late = false;         ///< it finds contacts within its step, and passes them to Step::sink
+  bool rotation = true;     ///< bodies rotate
+  bool joints = true;       ///< joints have an effect
+  bool loops = true;        ///< joints may close loops of bodies, and angular motors may drive other joints
+  bool jointForces = true;  ///< joints measure their load (Joint::wantsFeedback)
+  bool armature = false;    ///< joints have the inertia of their rotors (JointAxis::armature)
+  bool sleeps = true;       ///< bodies at rest fall asleep; otherwise it steps all bodies always
+  bool surfaces = true;     ///< contacts have bounce, slip, and friction as a force, each its own
+  bool stateless = true;    ///< a solver has nothing of its own from step to step: another one continues bit for bit
+  bool parts = true;        ///< it can step some islands alone (Step::only), as another engine's deferred engine
+  bool detects = false;     ///< it finds contacts itself, before the step (ISolver::detector())
+  bool late = false;        ///< it finds contacts within its step, and passes them to Step::sink
+  // Which shapes collide, of an engine that finds contacts; the others have those of their ICollision.
+  bool meshes = true;        ///< static meshes with all their triangles; otherwise their convex hulls
+  bool bodyMeshes = true;    ///< so do those of bodies
+  bool heightFields = true;  ///< height fields collide
   bool controls = false;     ///< it applies State::controls. Otherwise they come as forces on the bodies; in both cases
                              ///< dry friction of controlled axes comes as a motor of speed 0
   bool damping = false;      ///< it applies JointAxis::damping. Otherwise it comes as forces
@@ -196,9 +200,12 @@ inline constexpr NamedCapability kNamedCapabilities[] = {
     {"inertia of rotors (armature)", &Capabilities::armature},
     {"sleep", &Capabilities::sleeps},
     {"surfaces of contacts: bounce, slip, friction as a force", &Capabilities::surfaces},
-    {"continues bit for bit from a saved state, or when it is replaced", &Capabilities::restores},
+    {"continues bit for bit when its solver is made anew", &Capabilities::stateless},
     {"contacts of its own, before the step", &Capabilities::detects},
     {"contacts of its own, within the step", &Capabilities::late},
+    {"static meshes with hollows", &Capabilities::meshes},
+    {"meshes with hollows on bodies", &Capabilities::bodyMeshes},
+    {"height fields", &Capabilities::heightFields},
 };
 
 /// The names of those that it has, or lacks.
@@ -213,7 +220,7 @@ inline std::vector<std::string> namesOf(const Capabilities& can, bool has = true
 /// describeEngine() in its describe().
 class IEngine : public PerWorld<ISolver> {
  public:
-  SPARK_INTERFACE(IEngine, 5);
+  SPARK_INTERFACE(IEngine, 7);
   virtual Capabilities capabilities() const = 0;
   /// True for kinds of extensions that it reads (api/extension.h).
   virtual bool reads(std::uint64_t /*kind*/) const { return false; }

@@ -2,6 +2,7 @@
 /// \file
 /// The trees that joints make of the bodies of a model, for engines in coordinates of joints.
 
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "api/model.h"

@@ -15,6 +15,7 @@
 
 #include "api/blocks.h"
 #include "api/math.h"
+#include "api/shape.h"
 #include "spark/abi/api/model.h"
 #include "spark/node.h"
 
@@ -71,20 +72,6 @@ struct Body {
   /// For engines whose drag and contacts depend on the parts of a body: all of them, the first with its joints; or
   /// none. Their masses are shares of the body's mass. Geoms name the part that they belong to.
   std::vector<Part> parts;
-};
-
-/// Kinds of collision shapes.
-enum class Shape { box, sphere, capsule, cylinder, plane, ray, mesh };
-/// A collision shape in its own frame. Capsules and cylinders lie along z.
-struct ShapeDescription {
-  Shape shape = Shape::box;
-  Vec3 lengths{1, 1, 1};           ///< box: full edge lengths [m]
-  double radius = 1;               ///< sphere, capsule, cylinder [m]
-  double length = 1;               ///< capsule (without the caps), cylinder, ray [m]
-  double plane[4] = {0, 0, 1, 0};  ///< a b c d of ax + by + cz = d, world frame; the normal need not have length 1
-  Vec3 rayOrigin = Vec3::Zero(), rayDirection{0, 0, 1};
-  std::vector<double> vertices;          ///< mesh: x y z of each vertex [m]
-  std::vector<std::uint32_t> triangles;  ///< mesh: three vertex indices of each triangle
 };
 
 /// A collision space. Geoms of different spaces collide with each other.

@@ -17,7 +17,7 @@ class SceneNode;
 /// The scene server, at /sys/server/scene. The active scene is /usr/scene unless set otherwise.
 class ISceneServer {
  public:
-  SPARK_INTERFACE(ISceneServer, 2);
+  SPARK_INTERFACE(ISceneServer, 3);
   static constexpr const char* kPath = "/sys/server/scene";
   /// The path of the active scene by default, and without a scene server.
   static constexpr const char* kDefaultScene = "/usr/scene";
@@ -31,6 +31,15 @@ class ISceneServer {
   /// Imports a file below `root` with the first importer that recognises its format. Throws Error with
   /// file:line:column; the importer decides which nodes stay in the tree then.
   virtual void importScene(std::string_view file, Node& root, const List& arguments) = 0;
+  /// A file that was imported, and the objects that came with it.
+  struct Import {
+    std::string file;
+    Ref<Node> root;  ///< below which it was imported
+    List arguments;
+    std::uint64_t first = 0, last = 0;  ///< Leaf::id of the first and of the last object
+  };
+  /// The imports of which something may still be there, in their order, without those that a file made.
+  virtual const std::vector<Import>& imports() const = 0;
   /// Counts a change of nodes or materials, for monitors and caches.
   virtual void markModified() = 0;
   /// Number of such changes so far.
@@ -38,6 +47,8 @@ class ISceneServer {
   /// Updates the world matrices of the active scene, top-down. Bodies and static colliders below transforms that were
   /// moved by hand follow.
   virtual void place() = 0;
+  /// The same for a scene that need not be the active one.
+  virtual void placeScene(Node& scene) = 0;
 };
 
 /// An importer of a scene format. A child of the scene server.

@@ -49,7 +49,7 @@ void BulletDetector::compile(const Model& model, const State& state, std::span<c
   poses_.resize(solids_.size());
   for (Index i = 0; i < solids_.size(); ++i) {
     const Geom& g = model.geoms[i];
-    if (!solids_[i] || !isMadeOf(*solids_[i], g)) solids_[i] = makeSolid(g);
+    if (!solids_[i] || !isMadeOf(*solids_[i], g)) solids_[i] = makeSolid(g, made_);
     place(model, state, i);
   }
 }
@@ -63,7 +63,7 @@ void BulletDetector::place(const Model& model, const State& state, Index geom) {
   b = {Vec3::Constant(-HUGE_VAL), Vec3::Constant(HUGE_VAL)};
   Solid& solid = *solids_[geom];
   if (!solid.shape) return;
-  solid.object.setWorldTransform(toBullet(pose));
+  solid.object.setWorldTransform(toBullet(Pose{pose.position + pose.rotation * solid.origin, pose.rotation}));
   btVector3 low, high;
   solid.shape->getAabb(solid.object.getWorldTransform(), low, high);
   b = {toVec(low), toVec(high)};

@@ -43,6 +43,7 @@ class BulletDetector : public engine::IDetector {
 
   btDefaultCollisionConfiguration configuration_;
   btCollisionDispatcher dispatcher_;
+  MadeShapes made_;
   std::vector<std::unique_ptr<Solid>> solids_;   ///< by geom
   std::vector<Bounds> bounds_;                   ///< by geom
   std::vector<Pose> poses_;                      ///< by geom

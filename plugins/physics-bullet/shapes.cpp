@@ -5,7 +5,9 @@
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
 #include <BulletCollision/CollisionShapes/btCylinderShape.h>
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <algorithm>
 
@@ -21,41 +23,76 @@ namespace {
 /// Margin of a mesh, which lies around it [m].
 constexpr double kMeshMargin = 0.0005;
 
-std::unique_ptr<btCollisionShape> hullOf(const ShapeDescription& s) {
-  auto hull = std::make_unique<btConvexHullShape>();
-  for (std::size_t i = 0; i + 2 < s.vertices.size(); i += 3)
-    hull->addPoint({s.vertices[i], s.vertices[i + 1], s.vertices[i + 2]}, false);
-  hull->recalcLocalAabb();
-  hull->setMargin(kMeshMargin);
-  return hull;
+}  // namespace
+
+struct BulletHull {
+  explicit BulletHull(std::shared_ptr<const engine::Mesh> from) : mesh(std::move(from)) {
+    for (std::size_t i = 0; i < mesh->vertices.size() / 3; ++i) shape.addPoint(toBullet(mesh->vertex(i)), false);
+    shape.recalcLocalAabb();
+    shape.setMargin(kMeshMargin);
+  }
+  std::shared_ptr<const engine::Mesh> mesh;
+  btConvexHullShape shape;
+};
+
+struct BulletMesh {
+  explicit BulletMesh(std::shared_ptr<const engine::Mesh> from)
+      : mesh(std::move(from)),
+        // Bullet only reads the numbers.
+        array(static_cast<int>(mesh->triangles.size() / 3),
+              reinterpret_cast<int*>(const_cast<std::uint32_t*>(mesh->triangles.data())),
+              static_cast<int>(3 * sizeof(int)), static_cast<int>(mesh->vertices.size() / 3),
+              const_cast<double*>(mesh->vertices.data()), static_cast<int>(3 * sizeof(double))),
+        shape(&array, true) {
+    static_assert(sizeof(int) == sizeof(std::uint32_t));
+    shape.setMargin(kMeshMargin);
+  }
+  std::shared_ptr<const engine::Mesh> mesh;
+  btTriangleIndexVertexArray array;
+  btBvhTriangleMeshShape shape;
+};
+
+struct BulletHeights {
+  explicit BulletHeights(std::shared_ptr<const engine::HeightField> from)
+      : field(std::move(from)),
+        shape(field->columns, field->rows, field->heights.data(), field->low, field->high, 2, true) {
+    shape.setLocalScaling({field->cellWidth(), field->cellDepth(), 1});
+    shape.setMargin(kMeshMargin);
+  }
+  std::shared_ptr<const engine::HeightField> field;
+  btHeightfieldTerrainShape shape;
+};
+
+namespace {
+
+/// The shape in what was made for it, which lives as long.
+template <class Made>
+std::shared_ptr<btCollisionShape> shapeIn(const std::shared_ptr<Made>& made) {
+  return {made, &made->shape};
 }
 
-std::unique_ptr<btCollisionShape> meshOf(Solid& solid) {
-  static_assert(sizeof(int) == sizeof(std::uint32_t));
-  ShapeDescription& s = solid.from;
-  solid.mesh = std::make_unique<btTriangleIndexVertexArray>(
-      static_cast<int>(s.triangles.size() / 3), reinterpret_cast<int*>(s.triangles.data()),
-      static_cast<int>(3 * sizeof(int)), static_cast<int>(s.vertices.size() / 3), s.vertices.data(),
-      static_cast<int>(3 * sizeof(double)));
-  auto mesh = std::make_unique<btBvhTriangleMeshShape>(solid.mesh.get(), true);
-  mesh->setMargin(kMeshMargin);
-  return mesh;
+template <class Made, class From>
+std::shared_ptr<btCollisionShape> sharedShape(engine::MadeOf<From, Made>& made,
+                                              const std::shared_ptr<const From>& from) {
+  return shapeIn(made.get(from, [](const auto& one) { return std::make_shared<Made>(one); }));
 }
 
-std::unique_ptr<btCollisionShape> shapeOf(Solid& solid) {
-  const ShapeDescription& s = solid.from;
+std::shared_ptr<btCollisionShape> shapeOf(const ShapeDescription& s, bool hasBody, MadeShapes& made) {
   switch (s.shape) {
     case Shape::box:
-      return std::make_unique<btBoxShape>(toBullet(Vec3(s.lengths / 2)));
+      return std::make_shared<btBoxShape>(toBullet(Vec3(s.lengths / 2)));
     case Shape::sphere:
-      return std::make_unique<btSphereShape>(s.radius);
+      return std::make_shared<btSphereShape>(s.radius);
     case Shape::capsule:
-      return std::make_unique<btCapsuleShapeZ>(s.radius, s.length);
+      return std::make_shared<btCapsuleShapeZ>(s.radius, s.length);
     case Shape::cylinder:
-      return std::make_unique<btCylinderShapeZ>(btVector3(s.radius, s.radius, s.length / 2));
+      return std::make_shared<btCylinderShapeZ>(btVector3(s.radius, s.radius, s.length / 2));
     case Shape::mesh:
-      if (s.vertices.empty() || s.triangles.empty()) return nullptr;
-      return solid.hasBody ? hullOf(s) : meshOf(solid);
+      return hasBody ? sharedShape(made.hulls, s.mesh) : sharedShape(made.meshes, s.mesh);
+    case Shape::convex:
+      return sharedShape(made.hulls, s.mesh);
+    case Shape::heightField:
+      return sharedShape(made.heights, s.heightField);
     default:
       return nullptr;
   }
@@ -63,20 +100,21 @@ std::unique_ptr<btCollisionShape> shapeOf(Solid& solid) {
 
 }  // namespace
 
-std::unique_ptr<Solid> makeSolid(const engine::Geom& geom) {
+std::unique_ptr<Solid> makeSolid(const engine::Geom& geom, MadeShapes& made) {
   auto solid = std::make_unique<Solid>();
   solid->id = geom.id;
   solid->hasBody = geom.body != engine::kNone;
   solid->from = geom.shape;
-  solid->shape = shapeOf(*solid);
+  solid->shape = shapeOf(geom.shape, solid->hasBody, made);
+  // Bullet's height fields are around the middle of their heights.
+  if (geom.shape.shape == Shape::heightField)
+    solid->origin.z() = (double(geom.shape.heightField->low) + geom.shape.heightField->high) / 2;
   if (solid->shape) solid->object.setCollisionShape(solid->shape.get());
   return solid;
 }
 
 bool isMadeOf(const Solid& solid, const engine::Geom& geom) {
-  const ShapeDescription &a = solid.from, &b = geom.shape;
-  return solid.hasBody == (geom.body != engine::kNone) && a.shape == b.shape && a.lengths == b.lengths &&
-         a.radius == b.radius && a.length == b.length && a.vertices == b.vertices && a.triangles == b.triangles;
+  return solid.hasBody == (geom.body != engine::kNone) && engine::isSame(solid.from, geom.shape);
 }
 
 void pointsBelowPlane(const ShapeDescription& shape, const Pose& pose, const Vec3& normal, const Vec3& origin,
@@ -109,8 +147,9 @@ void pointsBelowPlane(const ShapeDescription& shape, const Pose& pose, const Vec
       break;
     }
     case Shape::mesh:
-      for (std::size_t i = 0; i + 2 < shape.vertices.size(); i += 3)
-        add(pose.position + pose.rotation * Vec3(shape.vertices[i], shape.vertices[i + 1], shape.vertices[i + 2]));
+    case Shape::convex:
+      for (std::size_t i = 0; i < shape.mesh->vertices.size() / 3; ++i)
+        add(pose.position + pose.rotation * shape.mesh->vertex(i));
       break;
     default:
       break;

@@ -4,7 +4,6 @@
 
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionShapes/btCollisionShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 
 #include <memory>
 #include <vector>
@@ -13,18 +12,30 @@
 
 namespace spark::bullet {
 
+/// Shapes of Bullet that geoms share, and what their numbers are in.
+struct BulletMesh;
+struct BulletHull;
+struct BulletHeights;
+
+/// Those of a world.
+struct MadeShapes {
+  engine::MadeOf<engine::Mesh, BulletMesh> meshes;
+  engine::MadeOf<engine::Mesh, BulletHull> hulls;
+  engine::MadeOf<engine::HeightField, BulletHeights> heights;
+};
+
 /// A geom as Bullet has it.
 struct Solid {
-  std::uint64_t id = 0;  ///< of the geom
-  bool hasBody = false;  ///< a mesh is its convex hull then
-  std::unique_ptr<btTriangleIndexVertexArray> mesh;
-  engine::ShapeDescription from;            ///< what the shape was made of; owns the mesh's numbers
-  std::unique_ptr<btCollisionShape> shape;  ///< nullptr: it has no contacts, or is a plane
+  std::uint64_t id = 0;                     ///< of the geom
+  bool hasBody = false;                     ///< a mesh is its convex hull then
+  engine::ShapeDescription from;            ///< what the shape was made of
+  std::shared_ptr<btCollisionShape> shape;  ///< nullptr: it has no contacts, or is a plane
+  Vec3 origin = Vec3::Zero();               ///< of Bullet's shape, in the frame of `from` [m]
   btCollisionObject object;
 };
 
 /// Makes the shape of a geom.
-std::unique_ptr<Solid> makeSolid(const engine::Geom& geom);
+std::unique_ptr<Solid> makeSolid(const engine::Geom& geom, MadeShapes& made);
 
 /// True when the geom has still the shape that the solid was made of.
 bool isMadeOf(const Solid& solid, const engine::Geom& geom);

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
+#include <unordered_map>
 
 #include "api/scene_joint.h"
 #include "mjcf_constraints.h"
@@ -103,7 +104,8 @@ struct Writer {
   const Constraints& constraints;
   double step;  // s
   std::string out;
-  std::vector<std::vector<Index>> children, geoms;  // by link; by body
+  std::vector<std::vector<Index>> children, geoms;             // by link; by body
+  std::unordered_map<const engine::Mesh*, Index> meshOf = {};  // the geom whose name it has
 
   template <class... A>
   void put(fmt::format_string<A...> format, A&&... arguments) {
@@ -143,8 +145,12 @@ struct Writer {
         put(R"( type="plane" size="0 0 1")");
         break;
       }
+      case Shape::heightField:
+        put(R"( type="hfield" hfield="{}")", geomName(index));
+        pose.position += pose.rotation * Vec3(0, 0, s.heightField->low);
+        break;
       default:
-        put(R"( type="mesh" mesh="m{}")", index);
+        put(R"( type="mesh" mesh="m{}")", meshOf.at(s.mesh.get()));
         break;
     }
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
@@ -326,8 +332,15 @@ struct Writer {
     put("<asset>\n");
     for (Index i = 0; i < model.geoms.size(); ++i) {
       const engine::ShapeDescription& s = model.geoms[i].shape;
-      if (s.shape != Shape::mesh) continue;
-      put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(s.vertices, " "), fmt::join(s.triangles, " "));
+      // Geoms that share a mesh share one here.
+      if (s.mesh && meshOf.emplace(s.mesh.get(), i).second)
+        put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(s.mesh->vertices, " "),
+            fmt::join(s.mesh->triangles, " "));
+      // Its heights are written to the compiled model: see takeHeights().
+      if (s.shape == Shape::heightField)
+        put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{:.17g} {:.17g} {:.17g} 1"/>)", geomName(i),
+            s.heightField->columns, s.heightField->rows, s.heightField->width / 2, s.heightField->depth / 2,
+            spanOf(*s.heightField));
     }
     put("</asset>\n");
   }
@@ -346,6 +359,8 @@ void putActuators(Writer& w) {
 }
 
 }  // namespace
+
+double spanOf(const engine::HeightField& f) { return std::max(double(f.high) - f.low, 1e-6); }
 
 OptionNumbers optionsOf(const Model& model) { return model.extensions.world.get<OptionNumbers>(); }
 

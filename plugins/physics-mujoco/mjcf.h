@@ -52,6 +52,9 @@ int coordinatesOf(engine::JointType type);
 /// implicit integrator needs MuJoCo's own.
 bool hasOwnDrag(const engine::Model& model);
 
+/// Difference between the least and the greatest height of a field, above 0 [m].
+double spanOf(const engine::HeightField& field);
+
 /// The options of a model.
 OptionNumbers optionsOf(const engine::Model& model);
 

@@ -38,6 +38,15 @@ Sizes sizesFor(const engine::Model& model) {
   return {50 + 12 * single + jointed, 200 + 50 * single + 5 * jointed};
 }
 
+std::vector<Pose> posesOf(const engine::State& state) {
+  std::vector<Pose> out;
+  out.reserve(state.bodies.size());
+  for (const engine::DynamicState& s : state.bodies) out.push_back({s.position, s.rotation});
+  return out;
+}
+
+bool isSame(const Pose& a, const Pose& b) { return a.position == b.position && a.rotation == b.rotation; }
+
 /// The path of the node below `node` whose block has that number.
 std::string pathOfConstraint(const Node& node, int number) {
   for (const auto& child : node.children()) {
@@ -53,6 +62,7 @@ std::string pathOfConstraint(const Node& node, int number) {
 void MujocoSolver::compile(const engine::Model& model, const engine::State& state) {
   const Sizes least = sizesFor(model);
   sizes_ = {std::max(least.contacts, sizes_.contacts), std::max(least.rows, sizes_.rows)};
+  poses_.clear();
   if (world_ && static_cast<int>(model.bodies.size()) > engine_.atOnce_ && pending_.waited < kLongestWait)
     buildAside(model, state);
   else
@@ -66,6 +76,7 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   const std::string text = textOf(model, trees);
   try {
     begin(model, std::move(trees), compileWorld(text));
+    poses_ = posesOf(state);
   } catch (const Error& e) {
     refuse(e.what());
   }
@@ -100,6 +111,7 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.number = static_cast<std::uint64_t>(++engine_.compiledAside_);
   p.stepsLeft = stepsToCompile(model.bodies.size());
   p.trees.emplace(model, state);
+  p.poses = posesOf(state);
   p.compiled = std::async(std::launch::async, compileAside, textOf(model, *p.trees), engine_.isPaced());
 }
 
@@ -126,6 +138,7 @@ void MujocoSolver::takePending(const engine::Model& model) {
                                 p.waited);
   try {
     begin(model, std::move(*p.trees), p.compiled.get());
+    poses_ = std::move(p.poses);
   } catch (const Error& e) {
     refuse(e.what());
   }
@@ -173,6 +186,56 @@ void MujocoSolver::step(engine::Step& step) {
   full_ = true;
   sizes_ = old;
   build(step.model, step.state);
+}
+
+// ---- snapshots ----
+//
+// MuJoCo's coordinates of free bodies and ball joints count from the poses with which the world was compiled, so equal
+// numbers need a world that is compiled with the same.
+
+void MujocoSolver::save(const engine::State& state, StateWriter& out) const {
+  const bool whole = world_ && poses_.size() == state.bodies.size();
+  out.write(whole);
+  if (!whole) return;
+  world_->save(state, out);
+  if (!out.keeps()) return;
+  StateWriter compiled(true);
+  for (const Pose& p : poses_) {
+    for (int i = 0; i < 3; ++i) compiled.write(p.position[i]);
+    for (int i = 0; i < 9; ++i) compiled.write(p.rotation.data()[i]);
+  }
+  compiled.write(sizes_.contacts);
+  compiled.write(sizes_.rows);
+  compiled.write(step_);
+  compiled.write(full_);
+  out.aside(compiled.bytes());
+}
+
+void MujocoSolver::load(const engine::Model& model, const engine::State& state, StateReader& in) {
+  if (!in.readBool()) return;
+  const MujocoWorld::Saved numbers(in);
+  const std::string bytes = in.readString();
+  StateReader compiled(bytes);
+  engine::State then;
+  then.bodies.resize(model.bodies.size());
+  for (engine::DynamicState& s : then.bodies) {
+    for (int i = 0; i < 3; ++i) s.position[i] = compiled.readNumber();
+    for (int i = 0; i < 9; ++i) s.rotation.data()[i] = compiled.readNumber();
+  }
+  Sizes sizes;
+  sizes.contacts = static_cast<int>(compiled.readInteger());
+  sizes.rows = static_cast<int>(compiled.readInteger());
+  const double step = compiled.readNumber();
+  full_ = compiled.readBool();
+  const std::vector<Pose> poses = posesOf(then);
+  const bool same = world_ && std::equal(poses_.begin(), poses_.end(), poses.begin(), poses.end(), isSame) &&
+                    sizes_.contacts == sizes.contacts && sizes_.rows == sizes.rows && step_ == step;
+  if (!same) {
+    sizes_ = sizes;
+    step_ = step;
+    build(model, then);
+  }
+  if (world_) world_->resume(numbers, state);
 }
 
 }  // namespace spark::mujoco

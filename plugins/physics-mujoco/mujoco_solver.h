@@ -25,11 +25,16 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   void compile(const engine::Model&, const engine::State&, std::span<const Index>) override {}
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
               engine::Contacts& out) override;
+  void save(const engine::State& state, StateWriter& out) const override;
+  using engine::ISolver::load;
+  using engine::ISolver::save;
+  void load(const engine::Model& model, const engine::State& state, StateReader& in) override;
 
  private:
   /// A model that is being compiled in a second thread.
   struct Pending {
     std::optional<Trees> trees;  ///< nullopt: there is none
+    std::vector<Pose> poses;     ///< of which they were made
     std::future<Compiled> compiled;
     std::uint64_t number = 0;  ///< of all models that the engine compiles aside
     int stepsLeft = 0;         ///< until it takes over
@@ -52,6 +57,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   double step_ = 0.005;       ///< s
   std::vector<int> skipped_;  ///< constraints that the last text leaves out
   bool full_ = false;         ///< no more room can be had
+  std::vector<Pose> poses_;   ///< by body: those with which the world was compiled; empty: it has changed since
   std::string refused_;       ///< why the last model that was refused was
   Pending pending_;
   std::future<void> ending_;                      ///< the world before

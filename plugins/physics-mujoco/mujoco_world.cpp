@@ -1,5 +1,7 @@
 #include "mujoco_world.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 
@@ -60,6 +62,19 @@ Compiled compileWorld(const std::string& mjcf, bool ahead) {
   return c;
 }
 
+namespace {
+/// Writes the heights of a field to MuJoCo's, which are 0 to 1.
+void takeHeights(mjModel& m, int geom, const engine::ShapeDescription& shape) {
+  if (!shape.heightField || m.geom_type[geom] != mjGEOM_HFIELD) return;
+  const engine::HeightField& f = *shape.heightField;
+  const int field = m.geom_dataid[geom];
+  if (m.hfield_ncol[field] != f.columns || m.hfield_nrow[field] != f.rows) return;
+  const auto span = static_cast<float>(spanOf(f));
+  for (std::size_t i = 0; i < f.heights.size(); ++i)
+    m.hfield_data[static_cast<std::size_t>(m.hfield_adr[field]) + i] = (f.heights[i] - f.low) / span;
+}
+}  // namespace
+
 MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
     : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)) {
   placeConstraints(model, *m_);
@@ -104,7 +119,10 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
   }
   geoms_.assign(m_->ngeom, 0);
   for (Index i = 0; i < model.geoms.size(); ++i)
-    if (const int geom = id(compiled.geoms, geomName(i)); geom >= 0) geoms_[geom] = model.geoms[i].id;
+    if (const int geom = id(compiled.geoms, geomName(i)); geom >= 0) {
+      geoms_[geom] = model.geoms[i].id;
+      takeHeights(*m_, geom, model.geoms[i].shape);
+    }
 
   wrenches_.resize(static_cast<std::size_t>(m_->nbody));
   for (int body = 0; body < m_->nbody; ++body) {
@@ -398,6 +416,46 @@ void MujocoWorld::step(engine::Step& step) {
   give(step.model, step.state);
   // The physics server puts bodies back whose speed is none.
   for (const Index i : stopped) step.state.bodies[i].linearVelocity.setConstant(HUGE_VAL);
+}
+
+// ---- snapshots ----
+
+/// Calls `f` for each number that lasts from step to step.
+template <class F>
+void MujocoWorld::forEachNumber(F f) const {
+  for (int i = 0; i < m_->nq; ++i) f(d_->qpos[i]);
+  for (int i = 0; i < m_->nv; ++i) f(d_->qvel[i]);
+  for (int i = 0; i < m_->nv; ++i) f(d_->qacc_warmstart[i]);
+  for (int i = 0; i < m_->nv; ++i) f(m_->dof_frictionloss[i]);
+}
+
+void MujocoWorld::save(const State& state, StateWriter& out) const {
+  out.write(std::int64_t{m_->nq} + 3 * m_->nv);
+  forEachNumber([&out](const mjtNum& v) { out.write(v); });
+  out.write(static_cast<std::int64_t>(trees_.links.size()));
+  for (Index i = 0; i < trees_.links.size(); ++i) {
+    const Index body = trees_.links[i].body;
+    out.write(body != kNone && state.bodies[body].version == taken_[i]);
+  }
+}
+
+MujocoWorld::Saved::Saved(StateReader& in) {
+  numbers.resize(in.readCount());
+  for (double& v : numbers) v = in.readNumber();
+  taken.resize(in.readCount());
+  for (std::uint8_t& t : taken) t = in.readBool();
+}
+
+void MujocoWorld::resume(const Saved& saved, const State& state) {
+  if (saved.numbers.size() != static_cast<std::size_t>(m_->nq) + 3 * static_cast<std::size_t>(m_->nv) ||
+      saved.taken.size() != trees_.links.size() || state.loaded.size() != state.bodies.size())
+    throw Error(fmt::format("expected the saved state of {} coordinates and {} bodies, found {} numbers and {} bodies",
+                            m_->nq, trees_.links.size(), saved.numbers.size(), saved.taken.size()));
+  auto from = saved.numbers.begin();
+  forEachNumber([&from](mjtNum& v) { v = *from++; });
+  for (Index i = 0; i < trees_.links.size(); ++i)
+    taken_[i] = saved.taken[i] && trees_.links[i].body != kNone ? state.loaded[trees_.links[i].body] : 0;
+  prepared_ = false;
 }
 
 }  // namespace spark::mujoco

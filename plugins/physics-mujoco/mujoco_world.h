@@ -43,6 +43,17 @@ class MujocoWorld {
               engine::Contacts& out);
   void step(engine::Step& step);
 
+  /// Writes what the next step depends on and the state does not have: coordinates to the last bit.
+  void save(const engine::State& state, StateWriter& out) const;
+  /// What save() wrote.
+  struct Saved {
+    std::vector<double> numbers;
+    std::vector<std::uint8_t> taken;
+    explicit Saved(StateReader& in);
+  };
+  /// Goes on from it. Throws Error where it does not fit.
+  void resume(const Saved& saved, const engine::State& state);
+
   const Trees& trees() const { return trees_; }
   /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
   bool isFull() const;
@@ -78,6 +89,8 @@ class MujocoWorld {
     void operator+=(const Wrench& w) { torque += w.torque, force += w.force; }
   };
   bool isFree(int body) const;
+  template <class F>
+  void forEachNumber(F f) const;
   void addBodyDamping(const engine::Model& model, Index body, Vec3& force, Vec3& torque) const;
   Wrench dragOf(int body) const;
   /// Centre of mass of the body of the model that has one of MuJoCo's, all its parts together; world frame.

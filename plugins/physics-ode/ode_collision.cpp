@@ -5,9 +5,6 @@
 
 #include "api/joined_bodies.h"
 #include "spark/prefetch.h"
-#ifdef __SANITIZE_THREAD__
-#include <sanitizer/tsan_interface.h>
-#endif
 
 namespace spark::ode {
 
@@ -16,7 +13,6 @@ using engine::Index;
 using engine::kNone;
 using engine::Model;
 using engine::Shape;
-using engine::ShapeDescription;
 using engine::State;
 
 namespace {
@@ -26,92 +22,12 @@ constexpr int kMaxPerPair = 16;
 
 // ---- shapes and poses ----
 
-/// ODE keeps the pose of a destroyed geom for the next one that is created, in whichever thread, and exchanges it
-/// atomically. The thread sanitizer cannot see that within a library: it is told of the order by this tag.
-#ifdef __SANITIZE_THREAD__
-char posesOrder;
-void posePutBack() { __tsan_release(&posesOrder); }
-void poseTaken() { __tsan_acquire(&posesOrder); }
-#else
-void posePutBack() {}
-void poseTaken() {}
-#endif
-
-void destroy(const GeomData& g) {
-  posePutBack();
-  dGeomDestroy(g.geom);
-}
-
-/// A rotation that turns the z axis to `direction`.
-Mat3 alongZ(const Vec3& direction) {
-  const Vec3 z = direction.normalized();
-  const Vec3 x = z.unitOrthogonal();
-  Mat3 m;
-  m << x, z.cross(x), z;
-  return m;
-}
-
 /// Creates ODE's geom for g.shape.
-void createShape(GeomData& g, dSpaceID space) {
-  const ShapeDescription& s = g.shape;
-  switch (s.shape) {
-    case Shape::box:
-      g.geom = dCreateBox(space, s.lengths.x(), s.lengths.y(), s.lengths.z());
-      break;
-    case Shape::sphere:
-      g.geom = dCreateSphere(space, s.radius);
-      break;
-    case Shape::capsule:
-      g.geom = dCreateCapsule(space, s.radius, s.length);
-      break;
-    case Shape::cylinder:
-      g.geom = dCreateCylinder(space, s.radius, s.length);
-      break;
-    case Shape::plane: {
-      const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
-      g.geom = dCreatePlane(space, s.plane[0] / n, s.plane[1] / n, s.plane[2] / n, s.plane[3] / n);
-      break;
-    }
-    case Shape::ray:
-      g.geom = dCreateRay(space, s.length);
-      break;
-    case Shape::mesh:
-      g.mesh.reset(dGeomTriMeshDataCreate());
-      dGeomTriMeshDataBuildDouble(g.mesh.get(), s.vertices.data(), 3 * sizeof(double),
-                                  static_cast<int>(s.vertices.size() / 3), s.triangles.data(),
-                                  static_cast<int>(s.triangles.size()), 3 * sizeof(std::uint32_t));
-      g.geom = dCreateTriMesh(space, g.mesh.get(), nullptr, nullptr, nullptr);
-      break;
-  }
-  poseTaken();
+void createShape(GeomData& g, dSpaceID space, MadeShapes& made) {
+  g.geom = createGeom(g.shape, space, made, g.shared);
   dGeomSetData(g.geom, &g);
   // ODE's getter returns a pointer into the geom, which stays valid as long as it lives.
-  g.rotation = s.shape == Shape::plane ? nullptr : const_cast<dReal*>(dGeomGetRotation(g.geom));
-}
-
-/// Changes the dimensions of ODE's geom, so that it keeps its position in the space's list. Returns false when the geom
-/// must be created again.
-bool reshape(const GeomData& g, const ShapeDescription& s) {
-  if (s.shape != g.shape.shape) return false;
-  switch (s.shape) {
-    case Shape::box:
-      dGeomBoxSetLengths(g.geom, s.lengths.x(), s.lengths.y(), s.lengths.z());
-      return true;
-    case Shape::sphere:
-      dGeomSphereSetRadius(g.geom, s.radius);
-      return true;
-    case Shape::capsule:
-      dGeomCapsuleSetParams(g.geom, s.radius, s.length);
-      return true;
-    default:
-      return false;
-  }
-}
-
-bool same(const ShapeDescription& a, const ShapeDescription& b) {
-  return a.shape == b.shape && a.lengths == b.lengths && a.radius == b.radius && a.length == b.length &&
-         std::equal(a.plane, a.plane + 4, b.plane) && a.rayOrigin == b.rayOrigin && a.rayDirection == b.rayDirection &&
-         a.vertices == b.vertices && a.triangles == b.triangles;
+  g.rotation = g.shape.shape == Shape::plane ? nullptr : const_cast<dReal*>(dGeomGetRotation(g.geom));
 }
 
 /// Writes a pose to ODE's geom, without change of a bit, and marks it as moved.
@@ -141,11 +57,8 @@ void place(const GeomData& g, const State& state) {
 
 /// Takes body and offset from the model.
 void takePlace(GeomData& g, const engine::Geom& from) {
-  // Origin and direction of a ray are a pose of ODE's shape.
-  const Pose base =
-      from.shape.shape == Shape::ray ? Pose{from.shape.rayOrigin, alongZ(from.shape.rayDirection)} : Pose{};
   g.body = from.body;
-  g.offset = compose(from.offset, base);
+  g.offset = compose(from.offset, frameOf(g.shape, g.shared));
   g.centred = g.body != kNone && g.offset.position.isZero(0) && g.offset.rotation.isIdentity(0);
 }
 
@@ -163,7 +76,7 @@ CollisionWorld::CollisionWorld(bool replay) : exactReplay(replay), root(dHashSpa
 }
 
 CollisionWorld::~CollisionWorld() {
-  for (const auto& g : geoms) destroy(*g);
+  for (const auto& g : geoms) destroyGeom(g->geom);
   // From the last: inner spaces were created after the spaces around them.
   for (auto s = spaces.rbegin(); s != spaces.rend(); ++s) dSpaceDestroy((*s)->space);
   dSpaceDestroy(root);
@@ -190,13 +103,13 @@ void createSpace(CollisionWorld& w, const Model& model, Index index) {
   w.spaces.push_back(std::move(s));
 }
 
-void createGeom(CollisionWorld& w, const Model& model, const State& state, Index index) {
+void addGeom(CollisionWorld& w, const Model& model, const State& state, Index index) {
   const engine::Geom& from = model.geoms[index];
   auto g = std::make_unique<GeomData>();
   g->id = from.id;
   g->owner = from.owner;
   g->shape = from.shape;
-  createShape(*g, w.spaces[from.space]->space);
+  createShape(*g, w.spaces[from.space]->space, w.made);
   takePlace(*g, from);
   place(*g, state);
   setCollides(*g, from.collides);
@@ -239,14 +152,49 @@ void followBodies(const CollisionWorld& w, const State& state) {
 
 }  // namespace
 
+namespace {
+/// Brings all geoms into the order that was loaded, as ODE would have it now.
+void restoreOrder(CollisionWorld& w, const State& state) {
+  const CollisionWorld::Order order = *std::exchange(w.loaded, std::nullopt);
+  if (order.spaces.size() != w.spaces.size()) return;  // the world was changed since
+  const auto clean = [&w] {
+    for (const auto& s : w.spaces) dSpaceClean(s->space);
+  };
+  clean();
+  // Inner spaces first: a change of one may move it in the space around it. One geom at a time, so that ODE never has
+  // one that is not clean behind one that is.
+  for (std::size_t s = w.spaces.size(); s-- > 0;) {
+    const dSpaceID space = w.spaces[s]->space;
+    for (auto g = order.spaces[s].rbegin(); g != order.spaces[s].rend(); ++g) {
+      dSpaceRemove(space, *g);
+      dSpaceAdd(space, *g);
+      clean();
+    }
+  }
+  // What is clean comes to the front when it moves.
+  for (const Index i : order.moved)
+    for (Index g = w.firstGeom[i]; g < w.firstGeom[i + 1]; ++g) place(*w.geoms[w.geomsOf[g]], state);
+}
+
+/// True if nothing was removed since compile().
+bool isAsBuilt(const CollisionWorld& w, const Model& model) {
+  return std::all_of(w.geoms.begin(), w.geoms.end(), [&](const auto& g) {
+    return g->index < model.geoms.size() && model.geoms[g->index].id == g->id && model.geoms[g->index].body == g->body;
+  });
+}
+}  // namespace
+
 void OdeDetector::compile(const Model& model, const State& state, std::span<const Index> edited) {
   const MessageCapture capture(node_.messages_.last);
   CollisionWorld& w = world_;
+  // The order that was loaded is that of the elements of then.
+  if (w.loaded && isAsBuilt(w, model)) restoreOrder(w, state);
+  w.loaded.reset();
 
   // Removed elements; inner spaces before the spaces around them.
   std::erase_if(w.geoms, [&](const auto& g) {
     if (engine::indexOf(model.geoms, g->id) != kNone) return false;
-    destroy(*g);
+    destroyGeom(g->geom);
     return true;
   });
   for (std::size_t i = w.spaces.size(); i-- > 0;) {
@@ -263,7 +211,7 @@ void OdeDetector::compile(const Model& model, const State& state, std::span<cons
     if (geom == model.geoms.size() || (space < model.spaces.size() && model.spaces[space].id < model.geoms[geom].id))
       createSpace(w, model, space);
     else
-      createGeom(w, model, state, geom);
+      addGeom(w, model, state, geom);
   }
   for (Index i = 0; i < model.spaces.size(); ++i) w.spaces[i]->inner = model.spaces[i].inner;
 
@@ -281,14 +229,13 @@ void OdeDetector::compile(const Model& model, const State& state, std::span<cons
     if (i >= oldGeoms) continue;
     GeomData& g = *w.geoms[i];
     const engine::Geom& from = model.geoms[i];
-    if (!same(g.shape, from.shape)) {
-      if (reshape(g, from.shape)) {
+    if (!engine::isSame(g.shape, from.shape)) {
+      if (reshape(g.geom, g.shape, from.shape)) {
         g.shape = from.shape;
       } else {
-        destroy(g);
-        g.mesh.reset();
+        destroyGeom(g.geom);
         g.shape = from.shape;
-        createShape(g, w.spaces[from.space]->space);
+        createShape(g, w.spaces[from.space]->space, w.made);
         if (!g.collides) dGeomDisable(g.geom);
       }
     }
@@ -327,7 +274,7 @@ void OdeDetector::save(const State& state, StateWriter& out) const {
   for (const Index i : state.moved) out.write(static_cast<std::int64_t>(i));
 }
 
-void OdeDetector::load(const Model& model, StateReader& in) {
+void OdeDetector::load(const Model& model, const State&, StateReader& in) {
   CollisionWorld& w = world_;
   if (!w.exactReplay) return;
   const auto expect = [](bool good) {
@@ -352,31 +299,6 @@ void OdeDetector::load(const Model& model, StateReader& in) {
   }
   w.loaded = std::move(order);
 }
-
-namespace {
-/// Brings all geoms into the order that was loaded, as ODE would have it now.
-void restoreOrder(CollisionWorld& w, const State& state) {
-  const CollisionWorld::Order order = *std::exchange(w.loaded, std::nullopt);
-  if (order.spaces.size() != w.spaces.size()) return;  // the world was changed since
-  const auto clean = [&w] {
-    for (const auto& s : w.spaces) dSpaceClean(s->space);
-  };
-  clean();
-  // Inner spaces first: a change of one may move it in the space around it. One geom at a time, so that ODE never has
-  // one that is not clean behind one that is.
-  for (std::size_t s = w.spaces.size(); s-- > 0;) {
-    const dSpaceID space = w.spaces[s]->space;
-    for (auto g = order.spaces[s].rbegin(); g != order.spaces[s].rend(); ++g) {
-      dSpaceRemove(space, *g);
-      dSpaceAdd(space, *g);
-      clean();
-    }
-  }
-  // What is clean comes to the front when it moves.
-  for (const Index i : order.moved)
-    for (Index g = w.firstGeom[i]; g < w.firstGeom[i + 1]; ++g) place(*w.geoms[w.geomsOf[g]], state);
-}
-}  // namespace
 
 // ---- detection ----
 
@@ -422,9 +344,52 @@ void near(void* detection, dGeomID o1, dGeomID o2) {
   d.w.pairs.push_back({a, b});
 }
 
-/// Narrow phase: writes at most `max` contact points to `found` and returns their number.
-int collide(const Pair& pair, int max, dContactGeom* found) {
-  if (pair.a->shape.shape != Shape::mesh && pair.b->shape.shape != Shape::mesh)
+PlacedShape placed(const GeomData& g) {
+  return {g.shape, g.shared.hull ? &g.shared.hull->hull : nullptr, toVec(dGeomGetPosition(g.geom)), toMat(g.rotation)};
+}
+
+/// Contacts of a pair with a convex hull.
+int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts& contacts, dContactGeom* found) {
+  const bool second = a.shape.shape != Shape::convex;
+  const GeomData &hull = second ? b : a, &other = second ? a : b;
+  const auto ask = [&](int most) { return dCollide(hull.geom, other.geom, most, found, sizeof(dContactGeom)); };
+  int count = 0;
+  switch (other.shape.shape) {
+    case Shape::plane: {
+      dVector4 plane;
+      dGeomPlaneGetParams(other.geom, plane);
+      count = contacts.onPlane(placed(hull), toVec(plane), plane[3], max, found);
+      break;
+    }
+    case Shape::mesh: {
+      // ODE finds those of this order alone, triangle by triangle.
+      const std::lock_guard lock(meshMutex());
+      count = other.body == kNone ? contacts.onMesh(placed(hull), hull.shared.hull->probe, other.geom, max, found)
+                                  : contacts.choose(ask(kMaxPerPair), max, found);
+      break;
+    }
+    case Shape::heightField:
+      count = contacts.choose(ask(kMaxPerPair), max, found);
+      break;
+    case Shape::ray:
+      count = ask(max);
+      break;
+    default:
+      count = ask(1);
+      if (count > 0) count = contacts.spread(placed(hull), placed(other), max, found);
+  }
+  if (second)
+    for (int i = 0; i < count; ++i)
+      for (int k = 0; k < 3; ++k) found[i].normal[k] = -found[i].normal[k];
+  return count;
+}
+
+/// Narrow phase: writes at most `max` contact points to `found`, which has room for kMaxPerPair, and returns their
+/// number.
+int collide(const Pair& pair, int max, ConvexContacts& contacts, dContactGeom* found) {
+  const Shape a = pair.a->shape.shape, b = pair.b->shape.shape;
+  if (a == Shape::convex || b == Shape::convex) return collideConvex(*pair.a, *pair.b, max, contacts, found);
+  if (a != Shape::mesh && b != Shape::mesh)
     return dCollide(pair.a->geom, pair.b->geom, max, found, sizeof(dContactGeom));
   const std::lock_guard lock(meshMutex());
   return dCollide(pair.a->geom, pair.b->geom, max, found, sizeof(dContactGeom));
@@ -457,7 +422,7 @@ void OdeDetector::detect(const Model&, const State& state, engine::PairFilter fi
   dContactGeom found[kMaxPerPair];
   const int max = std::clamp(perPair, 1, kMaxPerPair);
   for (const Pair& pair : w.pairs) {
-    const int n = collide(pair, max, found);
+    const int n = collide(pair, max, w.convex, found);
     for (int i = 0; i < n; ++i) {
       const dContactGeom& g = found[i];
       // Degenerate shapes may give a normal that is not finite.

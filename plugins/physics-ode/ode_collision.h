@@ -16,8 +16,10 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "convex_contacts.h"
 #include "ode_numbers.h"
 #include "ode_process.h"
+#include "ode_shapes.h"
 #include "spark/describe.h"
 #include "spark/kernel.h"
 
@@ -37,11 +39,7 @@ struct SpaceData {
   std::uint64_t collidedAt = 0;  ///< number of the detection in which its geoms were last collided with each other
 };
 
-struct MeshDeleter {
-  void operator()(dTriMeshDataID mesh) const { dGeomTriMeshDataDestroy(mesh); }
-};
-
-/// A geom, in its own place: ODE refers to it and to the mesh in it.
+/// A geom, in its own place: ODE refers to it.
 struct GeomData {
   std::uint64_t id;
   dGeomID geom = nullptr;
@@ -53,9 +51,9 @@ struct GeomData {
   bool jointed = false;  ///< its body has joints
   /// Pose of ODE's shape in the frame of the body, or in the world.
   Pose offset;
-  bool centred = false;            ///< `offset` is the identity
-  engine::ShapeDescription shape;  ///< ODE refers to the vertices and triangles of a mesh in here
-  std::unique_ptr<dxTriMeshData, MeshDeleter> mesh;
+  bool centred = false;  ///< `offset` is the identity
+  engine::ShapeDescription shape;
+  SharedShape shared;  ///< ODE refers to it
 };
 
 /// Two geoms whose bounds overlap, ordered by age.
@@ -71,6 +69,8 @@ struct CollisionWorld {
   bool exactReplay;
   dSpaceID root;  ///< the space around all top-level spaces
   std::vector<std::unique_ptr<SpaceData>> spaces;
+  MadeShapes made;
+  ConvexContacts convex;
   std::vector<std::unique_ptr<GeomData>> geoms;  ///< as in the model
   std::uint64_t detections = 0;
   std::uint64_t builtAt = 0;  ///< Model::structure for which the lists below were made
@@ -100,7 +100,7 @@ class OdeDetector : public engine::IDetector {
   void detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter, int perPair,
               engine::Contacts& out) override;
   void save(const engine::State& state, StateWriter& out) const override;
-  void load(const engine::Model& model, StateReader& in) override;
+  void load(const engine::Model& model, const engine::State& state, StateReader& in) override;
   /// ODE's spaces and geoms, for measurements.
   const CollisionWorld& world() const { return world_; }
 

@@ -248,7 +248,7 @@ void widen(Vec3& low, Vec3& high, const Vec3& p) {
   high = high.cwiseMax(p);
 }
 
-/// Widens an empty box (`low` infinite, `high` minus infinite) to the bounds of a plane, a ray or a mesh.
+/// Widens an empty box (`low` infinite, `high` minus infinite) to the bounds of a shape that is not symmetric.
 void boundsOf(const ShapeDescription& s, const Pose& p, Vec3& low, Vec3& high) {
   if (s.shape == Shape::plane) {
     std::swap(low, high);  // unbounded
@@ -256,9 +256,15 @@ void boundsOf(const ShapeDescription& s, const Pose& p, Vec3& low, Vec3& high) {
     const Vec3 from = p.position + p.rotation * s.rayOrigin;
     widen(low, high, from);
     widen(low, high, from + p.rotation * s.rayDirection.normalized() * s.length);
+  } else if (s.shape == Shape::heightField) {
+    const engine::HeightField& f = *s.heightField;
+    for (int corner = 0; corner < 8; ++corner)
+      widen(low, high,
+            p.position + p.rotation * Vec3(corner & 1 ? f.width / 2 : -f.width / 2,
+                                           corner & 2 ? f.depth / 2 : -f.depth / 2, corner & 4 ? f.high : f.low));
   } else {
-    for (std::size_t i = 0; i + 2 < s.vertices.size(); i += 3)
-      widen(low, high, p.position + p.rotation * Vec3(s.vertices[i], s.vertices[i + 1], s.vertices[i + 2]));
+    for (std::size_t i = 0; i < s.mesh->vertices.size() / 3; ++i)
+      widen(low, high, p.position + p.rotation * s.mesh->vertex(i));
   }
 }
 

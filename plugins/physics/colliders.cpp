@@ -102,32 +102,4 @@ void RayCollider::setParams(const Vec3& origin, const Vec3& direction, double le
   change(ray_, std::move(s));
 }
 
-void TriMeshCollider::describe(Description<TriMeshCollider>& d) {
-  d.doc(
-      "A triangle mesh; it collides once it has vertices and triangles. Best used static: contacts of two meshes are "
-      "only approximate.");
-  d.property("vertices", &TriMeshCollider::vertices, &TriMeshCollider::setVertices)
-      .unit("m")
-      .doc("x y z of each vertex. Setting it removes all triangles.");
-  d.property("triangles", &TriMeshCollider::triangles, &TriMeshCollider::setTriangles)
-      .min(0)
-      .doc("Three vertex indices of each triangle, from 0, counter-clockwise seen from outside.");
-}
-
-std::optional<ShapeDescription> TriMeshCollider::shape() const {
-  if (mesh_.vertices.empty() || mesh_.triangles.empty()) return std::nullopt;
-  return mesh_;
-}
-
-void TriMeshCollider::setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles) {
-  for (std::int64_t t : triangles)
-    if (t < 0 || 3 * t + 2 >= static_cast<std::int64_t>(vertices.size()))
-      throw Error(fmt::format("{}: a triangle names vertex {}, there are {}. Set the vertices first", where(), t,
-                              vertices.size() / 3));
-  ShapeDescription s = mesh_;
-  s.vertices = std::move(vertices);
-  s.triangles.assign(triangles.begin(), triangles.end());
-  change(mesh_, std::move(s));
-}
-
 }  // namespace spark

@@ -17,21 +17,15 @@ class TransformCollider : public Collider {
   }
 };
 
-/// Base of the colliders with convex shapes. On its own, as in old scenes, it has no geometry.
-class ConvexCollider : public Collider {
-  SPARK_CLASS(ConvexCollider, Collider)
- public:
-  static void describe(Description<ConvexCollider>& d) { d.doc("Base of convex colliders; has no geometry itself."); }
-};
-/// Base of the colliders with other shapes. On its own, as in old scenes, it has no geometry.
+/// Base of the colliders with shapes that need not be convex. On its own, as in old scenes, it has no geometry.
 class ConcaveCollider : public Collider {
   SPARK_CLASS(ConcaveCollider, Collider)
  public:
   static void describe(Description<ConcaveCollider>& d) { d.doc("Base of concave colliders; has no geometry itself."); }
 };
 /// Accepted for old scenes; has no geometry.
-class ConeCollider : public ConvexCollider {
-  SPARK_CLASS(ConeCollider, ConvexCollider)
+class ConeCollider : public Collider {
+  SPARK_CLASS(ConeCollider, Collider)
  public:
   static void describe(Description<ConeCollider>& d) { d.doc("Accepted for old scenes; has no geometry."); }
 };
@@ -49,8 +43,8 @@ class EmptyCollider : public Collider {
 };
 
 /// A box; each edge is 1 m long by default.
-class BoxCollider : public ConvexCollider, public IRobotBox {
-  SPARK_CLASS(BoxCollider, ConvexCollider)
+class BoxCollider : public Collider, public IRobotBox {
+  SPARK_CLASS(BoxCollider, Collider)
  public:
   static void describe(Description<BoxCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
@@ -73,8 +67,8 @@ class BoxCollider : public ConvexCollider, public IRobotBox {
 };
 
 /// A sphere; its radius is 1 m by default.
-class SphereCollider : public ConvexCollider {
-  SPARK_CLASS(SphereCollider, ConvexCollider)
+class SphereCollider : public Collider {
+  SPARK_CLASS(SphereCollider, Collider)
  public:
   static void describe(Description<SphereCollider>& d);
   std::optional<engine::ShapeDescription> shape() const override;
@@ -88,7 +82,7 @@ class SphereCollider : public ConvexCollider {
 
 /// Base of capsule and cylinder: a radius and a length along z, 1 m each by default.
 template <class Self, engine::Shape S>
-class LongCollider : public ConvexCollider {
+class LongCollider : public Collider {
  public:
   std::optional<engine::ShapeDescription> shape() const override {
     engine::ShapeDescription s;
@@ -126,7 +120,7 @@ class LongCollider : public ConvexCollider {
 
 /// A cylinder with a half sphere at each end.
 class CapsuleCollider : public LongCollider<CapsuleCollider, engine::Shape::capsule> {
-  SPARK_CLASS(CapsuleCollider, ConvexCollider)
+  SPARK_CLASS(CapsuleCollider, Collider)
  public:
   static void describe(Description<CapsuleCollider>& d) {
     d.doc("A capsule along z.");
@@ -136,7 +130,7 @@ class CapsuleCollider : public LongCollider<CapsuleCollider, engine::Shape::caps
 
 /// A cylinder.
 class CylinderCollider : public LongCollider<CylinderCollider, engine::Shape::cylinder> {
-  SPARK_CLASS(CylinderCollider, ConvexCollider)
+  SPARK_CLASS(CylinderCollider, Collider)
  public:
   static void describe(Description<CylinderCollider>& d) {
     d.doc("A cylinder along z.");
@@ -167,22 +161,6 @@ class RayCollider : public Collider {
  private:
   void setParams(const Vec3& origin, const Vec3& direction, double length);
   engine::ShapeDescription ray_{.shape = engine::Shape::ray};
-};
-
-/// A triangle mesh.
-class TriMeshCollider : public ConcaveCollider {
-  SPARK_CLASS(TriMeshCollider, ConcaveCollider)
- public:
-  static void describe(Description<TriMeshCollider>& d);
-  std::optional<engine::ShapeDescription> shape() const override;
-
- private:
-  const std::vector<double>& vertices() const { return mesh_.vertices; }
-  void setVertices(std::vector<double> v) { setMesh(std::move(v), {}); }
-  std::vector<std::int64_t> triangles() const { return {mesh_.triangles.begin(), mesh_.triangles.end()}; }
-  void setTriangles(std::vector<std::int64_t> t) { setMesh(mesh_.vertices, std::move(t)); }
-  void setMesh(std::vector<double> vertices, std::vector<std::int64_t> triangles);
-  engine::ShapeDescription mesh_{.shape = engine::Shape::mesh};
 };
 
 }  // namespace spark

@@ -1,5 +1,6 @@
 #include "effects.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "api/joint_trees.h"
@@ -17,11 +18,12 @@ void Effects::check(engine::IEngine& engine, const engine::Model& model) {
     saidOf_.clear();
     seen_ = {};
   }
-  const std::array now{model.structure, model.dynamics};
+  const std::array now{model.structure, model.dynamics, model.collision};
   if (std::exchange(seen_, now) == now) return;
   const engine::Capabilities can = engine.capabilities();
   checkJoints(can, model);
   if (!can.surfaces) checkSurfaces();
+  if (can.findsContacts()) checkShapes(can);
   checkExtensions(engine);
 }
 
@@ -57,6 +59,41 @@ void Effects::checkSurfaces() {
     if (s->bounceOn && s->bounce > 0) say(kBounce, *node, "bounce has");
     if (s->slipOn) say(kSlip, *node, "slip has");
     if (!s->pyramid && std::isfinite(s->mu)) say(kForceFriction, *node, "friction that is a force has");
+  }
+}
+
+namespace {
+/// True if no corner of a mesh is above one of its triangles. Of huge meshes it is not known: false.
+bool isConvex(const engine::Mesh& m) {
+  const std::size_t corners = m.vertices.size() / 3, triangles = m.triangles.size() / 3;
+  if (corners * triangles > 100'000'000) return false;
+  double size = 0;
+  for (const double v : m.vertices) size = std::max(size, std::abs(v));
+  for (std::size_t t = 0; t < triangles; ++t) {
+    const auto at = [&](std::size_t k) { return m.vertex(m.triangles[3 * t + k]); };
+    const Vec3 normal = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+    for (std::size_t i = 0; i < corners; ++i)
+      if (normal.dot(m.vertex(i) - at(0)) > 1e-6 * size) return false;
+  }
+  return true;
+}
+}  // namespace
+
+void Effects::checkShapes(const engine::Capabilities& can) {
+  for (const Collider* node : colliders) {
+    const auto s = node->shape();
+    if (!s) continue;
+    if (s->shape == engine::Shape::heightField && !can.heightFields && !std::exchange(said_[kHeightFields], true))
+      node->kernel().log().warning("{}: height fields do not collide with {}: take a TriMeshCollider, or boxes",
+                                   node->path(), engineName_);
+    if (s->shape != engine::Shape::mesh || said_[kMeshes]) continue;
+    if ((node->body() ? can.bodyMeshes : can.meshes) || isConvex(*s->mesh)) continue;
+    said_[kMeshes] = true;
+    node->kernel().log().warning(
+        "{}: a {} mesh collides as its convex hull with {}, its hollows are filled: take a ConvexCollider for each "
+        "convex part of it{}",
+        node->path(), node->body() ? "body's" : "static", engineName_,
+        can.heightFields ? ", or for ground a HeightFieldCollider" : "");
   }
 }
 

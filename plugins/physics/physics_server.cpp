@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "api/phases.h"
+#include "api/snapshots.h"
 #include "colliders.h"
 #include "contact_loop.h"
 #include "queries.h"
@@ -13,11 +14,13 @@ namespace spark {
 
 void PhysicsServer::describe(Description<PhysicsServer>& d) {
   using S = PhysicsServer;
-  d.doc("Steps the world of the active scene with the engine below it.");
+  d.doc("Steps the world of a scene with the engine below it.");
   d.implements<IPhysicsServer>();
-  d.link(&S::scene_, At<ISceneServer>());
+  d.link(&S::scenes_, At<ISceneServer>());
   d.link(&S::engine_, Child<engine::IEngine>());
   d.link(&S::collision_, Child<engine::ICollision>());
+  d.property("scene", &S::scenePath, &S::setScene)
+      .doc("Path of the scene whose world it steps; empty: the active one. Set it before the world is made.");
   d.property("jointHeating", &S::jointHeating_).doc("Modelled motors change their temperature.");
   d.property("batteryDischarge", &S::batteryDischarge_).doc("Modelled motors drain their batteries.");
   d.property("defaultHandlerOnTransformCollider", &S::defaultOnTransform, &S::setDefaultOnTransform)
@@ -39,6 +42,7 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
       .doc("Maximum number of contact points of two colliders.");
   d.on<&PhysicsServer::physics>(phase::kPhysics);
   d.on<&PhysicsServer::place>(phase::kPlace);
+  d.on<&PhysicsServer::restored>(kRestored);
 }
 
 void PhysicsServer::expectEngines() const {
@@ -56,9 +60,23 @@ void PhysicsServer::expectEngines() const {
   expect(collision_ || engine_->capabilities().findsContacts(), "collision detection", "collision", "ICollision");
 }
 
+Node* PhysicsServer::scene() {
+  if (!scenePath_.empty()) return kernel().root().find<Node>(scenePath_);
+  return scenes_ ? scenes_->activeScene() : find<Node>(ISceneServer::kDefaultScene);
+}
+
+bool PhysicsServer::isOf(const Node& scene) {
+  return scenePath_.empty() ? &scene == this->scene() : scene.path() == scenePath_;
+}
+
+void PhysicsServer::setScene(std::string path) {
+  scenePath_ = std::move(path);
+  tree_.lookAgain();
+}
+
 World* PhysicsServer::findWorld() {
-  Node* scene = scene_ ? scene_->activeScene() : find<Node>(ISceneServer::kDefaultScene);
-  auto* world = scene ? scene->childOf<World>() : nullptr;
+  Node* const at = scene();
+  auto* world = at ? at->childOf<World>() : nullptr;
   return world && world->model() ? world : nullptr;
 }
 
@@ -89,6 +107,7 @@ void PhysicsServer::collect(const Node& scene) {
     } else if (auto collider = object->as<Collider>()) {
       collider->refreshHandlers(defaultOnTransform_);
       collider->setGroup(nullptr);
+      effects_.colliders.push_back(collider);
     } else if (auto group = object->as<CollisionGroup>()) {
       groups.push_back(group);
     } else if (auto joint = object->as<Joint>()) {
@@ -161,7 +180,7 @@ void PhysicsServer::physics(const Event& event) {
   if (!hasEngines()) return lacksEngines();
   lacking_ = false;
   const InUse stepping(*this, "a step is under way");
-  if (scene_) scene_->place();
+  placeTransforms();
   shiftSurroundings();
   solve(event);
   reportFaults();
@@ -186,6 +205,11 @@ struct Sink : engine::IContactSink {
   int perPairMost;
 };
 }  // namespace
+
+void PhysicsServer::restored(const Event&) {
+  if (World* const world = currentWorld(); world && world->stepper() && engine_)
+    world->stepper()->settle(*engine_, collision_.get());
+}
 
 void PhysicsServer::solve(const Event& event) {
   const std::shared_ptr<physics::WorldModel> world = world_->model();
@@ -359,7 +383,11 @@ void PhysicsServer::place(const Event&) {
     }
     p.transform->setLocalFromBody(p.above ? Matrix(inverse * pose) : pose);
   }
-  if (scene_) scene_->place();
+  placeTransforms();
+}
+
+void PhysicsServer::placeTransforms() {
+  if (scenes_) scenes_->placeScene(*world_->parent());
 }
 
 void PhysicsServer::lacksEngines() {

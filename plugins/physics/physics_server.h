@@ -16,7 +16,8 @@
 
 namespace spark {
 
-/// Steps the world of the active scene. Its child `collision` detects contacts, its child `engine` solves them.
+/// Steps the world of a scene, by default of the active one. Its child `collision` detects contacts, its child `engine`
+/// solves them. Several servers step several scenes, each with an engine of its own.
 class PhysicsServer : public Node, public IPhysicsServer {
   SPARK_CLASS(PhysicsServer, Node)
  public:
@@ -33,6 +34,8 @@ class PhysicsServer : public Node, public IPhysicsServer {
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
   /// Throws Error, with what to do, unless there are an engine and a collision detection.
   void expectEngines() const;
+  /// True if it steps the world of that scene.
+  bool isOf(const Node& scene);
   /// True: worlds made from now on have Model::exactReplay.
   bool exactReplay() const { return exactReplay_; }
   /// True: modelled motors change their temperature.
@@ -50,7 +53,9 @@ class PhysicsServer : public Node, public IPhysicsServer {
     engine::Index index;   ///< of the body in the model, when `structure` was its structure
     bool moving = false;   ///< awake at the last placing: RigidBody::takeUnplaced() need not be called
   };
-  /// The world of the active scene; nullptr when there is none.
+  /// The scene that it steps; nullptr when there is none.
+  Node* scene();
+  /// Its world; nullptr when there is none.
   World* findWorld();
   /// The same without a search while the tree is that of refresh(): for calls by the thousand.
   World* currentWorld() { return world_ && !tree_.isStale(*this) ? world_ : findWorld(); }
@@ -67,6 +72,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   /// Detects contacts, calls handlers and steps the world.
   void solve(const Event& event);
   /// One of several steps of an engine that finds contacts within it: handlers run after it.
+  void restored(const Event&);
   void solveLate(const physics::WorldModel& world, physics::Stepper& stepper, double dt, int steps);
   /// The place phase: writes the poses of bodies to their transforms.
   void place(const Event& event);
@@ -79,15 +85,20 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void lacksEngines();
   bool defaultOnTransform() const { return defaultOnTransform_; }
   void setDefaultOnTransform(bool on);
+  std::string scenePath() const { return scenePath_; }
+  void setScene(std::string path);
+  /// Updates the world matrices of the scene. After refresh().
+  void placeTransforms();
 
   bool jointHeating_ = false, batteryDischarge_ = false, defaultOnTransform_ = true, measureForces_ = false,
        exactReplay_ = false;
   int contactsPerPair_ = 4;
+  std::string scenePath_;  ///< "": the active scene
 
   bool lacking_ = false;  ///< lacksEngines() has said so
   TreeWatch tree_;
   World* world_ = nullptr;
-  Link<ISceneServer> scene_;
+  Link<ISceneServer> scenes_;
   Link<engine::IEngine> engine_;
   Link<engine::ICollision> collision_;
   std::vector<Placed> bodies_;

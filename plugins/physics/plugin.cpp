@@ -4,6 +4,7 @@
 #include "colliders.h"
 #include "controllers.h"
 #include "handlers.h"
+#include "mesh_colliders.h"
 #include "physics_server.h"
 
 SPARK_PLUGIN(
@@ -14,6 +15,7 @@ SPARK_PLUGIN(
     spark::Battery, spark::Collider, spark::TransformCollider, spark::ConvexCollider, spark::ConcaveCollider,
     spark::ConeCollider, spark::CompoundCollider, spark::EmptyCollider, spark::BoxCollider, spark::SphereCollider,
     spark::CapsuleCollider, spark::CylinderCollider, spark::PlaneCollider, spark::RayCollider, spark::TriMeshCollider,
-    spark::CollisionHandler, spark::ContactJointHandler, spark::RecorderHandler, spark::ScriptHandler, spark::Joint,
-    spark::Generic6DOFJoint, spark::HingeJoint, spark::UniversalJoint, spark::Hinge2Joint, spark::BallJoint,
-    spark::SliderJoint, spark::FixedJoint, spark::ConeTwistJoint, spark::AngularMotor)
+    spark::HeightFieldCollider, spark::CollisionHandler, spark::ContactJointHandler, spark::RecorderHandler,
+    spark::ScriptHandler, spark::Joint, spark::Generic6DOFJoint, spark::HingeJoint, spark::UniversalJoint,
+    spark::Hinge2Joint, spark::BallJoint, spark::SliderJoint, spark::FixedJoint, spark::ConeTwistJoint,
+    spark::AngularMotor)

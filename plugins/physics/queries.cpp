@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "height_field.h"
 #include "shape_ray.h"
 
 namespace spark::physics {
@@ -11,10 +12,7 @@ using engine::Index;
 using engine::Shape;
 using engine::ShapeDescription;
 
-namespace {
-
-/// Distance from a point to a triangle: to its plane where the point is above it, else to the nearest edge. One without
-/// area has edges only.
+// To its plane where the point is above it, else to the nearest edge. One without area has edges only.
 double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 normal = (b - a).cross(c - a).normalized();
   const auto toEdge = [&](const Vec3& from, const Vec3& to) {
@@ -27,8 +25,6 @@ double distanceToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec
   if (!normal.isZero(0) && inside(a, b) && inside(b, c) && inside(c, a)) return std::abs(normal.dot(p - a));
   return std::min({toEdge(a, b), toEdge(b, c), toEdge(c, a)});
 }
-
-}  // namespace
 
 bool isQueried(const engine::Geom& g) { return g.collides && g.shape.shape != Shape::ray; }
 
@@ -62,6 +58,28 @@ std::optional<GeomHit> castRay(const engine::Model& model, const engine::State& 
   return nearest;
 }
 
+namespace {
+
+double distanceToSurface(const engine::Mesh& m, const Vec3& p) {
+  double nearest = HUGE_VAL;
+  for (std::size_t i = 0; i + 2 < m.triangles.size(); i += 3)
+    nearest = std::min(nearest, distanceToTriangle(p, cornerOf(m, i), cornerOf(m, i + 1), cornerOf(m, i + 2)));
+  return nearest;
+}
+
+/// How far a point is outside of the farthest of the planes of a hull's faces [m]; 0 or less inside.
+double beyondFaces(const engine::Mesh& m, const Vec3& p) {
+  double farthest = -HUGE_VAL;
+  for (std::size_t i = 0; i + 2 < m.triangles.size(); i += 3) {
+    const Vec3 a = cornerOf(m, i);
+    const Vec3 normal = (cornerOf(m, i + 1) - a).cross(cornerOf(m, i + 2) - a).normalized();
+    if (!normal.isZero(0)) farthest = std::max(farthest, normal.dot(p - a));
+  }
+  return farthest;
+}
+
+}  // namespace
+
 double distanceTo(const ShapeDescription& s, const Vec3& p) {
   const double aside = std::hypot(p.x(), p.y()), along = std::abs(p.z());
   switch (s.shape) {
@@ -82,12 +100,14 @@ double distanceTo(const ShapeDescription& s, const Vec3& p) {
       const Vec3 normal(s.plane[0], s.plane[1], s.plane[2]);
       return (normal.dot(p) - s.plane[3]) / normal.norm();
     }
-    case Shape::mesh: {
-      double nearest = HUGE_VAL;
-      for (std::size_t i = 0; i + 2 < s.triangles.size(); i += 3)
-        nearest = std::min(nearest, distanceToTriangle(p, vertexOf(s, i), vertexOf(s, i + 1), vertexOf(s, i + 2)));
-      return nearest;
+    case Shape::mesh:
+      return distanceToSurface(*s.mesh, p);
+    case Shape::convex: {
+      const double beyond = beyondFaces(*s.mesh, p);
+      return beyond <= 0 ? beyond : distanceToSurface(*s.mesh, p);
     }
+    case Shape::heightField:
+      return distanceTo(*s.heightField, p);
     case Shape::ray:
       break;
   }

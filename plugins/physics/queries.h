@@ -33,8 +33,11 @@ void findOverlaps(const engine::Model& model, const engine::State& state, const 
 bool touches(const engine::ShapeDescription& shape, const Vec3& position, const Mat3& toShape, const Vec3& center,
              double radius);
 
-/// Distance from a point to a shape, both in the shape's frame [m]; 0 or less inside. Of a mesh: to its surface.
+/// Distance from a point to a shape, both in the shape's frame [m]; 0 or less inside. Of a mesh and of a height field:
+/// to its surface.
 double distanceTo(const engine::ShapeDescription& shape, const Vec3& point);
+/// Distance from a point to a triangle [m].
+double distanceToTriangle(const Vec3& point, const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// True for geoms that rays and overlaps meet: those that collide, but not rays.
 bool isQueried(const engine::Geom& geom);

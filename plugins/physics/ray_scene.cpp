@@ -1,7 +1,6 @@
 #include "ray_scene.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "shape_ray.h"
 
@@ -13,17 +12,6 @@ using engine::Shape;
 using engine::ShapeDescription;
 
 namespace {
-
-/// FNV-1a (Fowler, Noll, Vo).
-template <class T>
-std::uint64_t hashOf(const std::vector<T>& numbers, std::uint64_t hash) {
-  for (const T& number : numbers) {
-    std::uint64_t bits = 0;
-    std::memcpy(&bits, &number, sizeof number);
-    hash = (hash ^ bits) * 0x100000001b3;
-  }
-  return hash;
-}
 
 /// The box around a shape in its own frame, of shapes other than planes and meshes.
 Box boundsOf(const ShapeDescription& s, const Mat3& rotation, const Vec3& center) {
@@ -58,21 +46,25 @@ Box padded(const Box& box) {
   return {box.low - pad, box.high + pad};
 }
 
-void buildMesh(BoxTree& tree, const ShapeDescription& s) {
-  std::vector<Box> boxes(s.triangles.size() / 3);
+void build(BoxTree& tree, const engine::Mesh& m) {
+  std::vector<Box> boxes(m.triangles.size() / 3);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const Vec3 a = vertexOf(s, 3 * i), b = vertexOf(s, 3 * i + 1), c = vertexOf(s, 3 * i + 2);
+    const Vec3 a = cornerOf(m, 3 * i), b = cornerOf(m, 3 * i + 1), c = cornerOf(m, 3 * i + 2);
     boxes[i] = padded({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
   }
   tree.build(boxes);
+}
+
+/// The box around a height field in its own frame.
+Box boundsOf(const engine::HeightField& f) {
+  return {{-f.width / 2, -f.depth / 2, f.low}, {f.width / 2, f.depth / 2, f.high}};
 }
 
 }  // namespace
 
 void RayScene::clear() {
   at_ = nullptr;
-  placed_.clear();
-  meshes_.clear();
+  placed_.clear();  // the trees of meshes stay, for the next update
 }
 
 void RayScene::update(const engine::Model& model, const engine::State& state, std::uint64_t poses) {
@@ -90,21 +82,21 @@ void RayScene::update(const engine::Model& model, const engine::State& state, st
 /// Lists the geoms, and builds the trees of new meshes.
 void RayScene::collect(const engine::Model& model) {
   placed_.clear();
-  std::vector<Mesh> meshes;
+  std::vector<std::shared_ptr<const MeshTree>> meshes;
   for (Index i = 0; i < model.geoms.size(); ++i) {
     const Geom& g = model.geoms[i];
     if (!isQueried(g)) continue;
-    int mesh = -1;
-    if (g.shape.shape == Shape::mesh) {
-      const std::uint64_t contents = hashOf(g.shape.triangles, hashOf(g.shape.vertices, 0xcbf29ce484222325));
-      const auto known = std::find_if(meshes_.begin(), meshes_.end(),
-                                      [&](const Mesh& m) { return m.id == g.id && m.contents == contents; });
-      mesh = static_cast<int>(meshes.size());
-      meshes.push_back(known != meshes_.end() ? std::move(*known) : Mesh{g.id, contents, {}});
-      if (meshes.back().triangles.empty()) buildMesh(meshes.back().triangles, g.shape);
-      if (meshes.back().triangles.empty()) continue;  // without triangles nothing is met
+    const BoxTree* triangles = nullptr;
+    if (g.shape.shape == Shape::mesh || g.shape.shape == Shape::convex) {
+      meshes.push_back(trees_.get(g.shape.mesh, [](const auto& mesh) {
+        auto made = std::make_shared<MeshTree>(MeshTree{mesh, {}});
+        build(made->triangles, *mesh);
+        return made;
+      }));
+      triangles = &meshes.back()->triangles;
+      if (triangles->empty()) continue;  // without triangles nothing is met
     }
-    placed_.push_back({&g, i, mesh, Vec3::Zero(), Mat3::Identity()});
+    placed_.push_back({&g, i, triangles, Vec3::Zero(), Mat3::Identity()});
   }
   meshes_ = std::move(meshes);
   const auto planes = std::stable_partition(placed_.begin(), placed_.end(),
@@ -119,10 +111,13 @@ void RayScene::place(const engine::Model& model, const engine::State& state) {
     const Pose pose = poseOf(model, state, p.index);
     p.position = pose.position;
     p.toShape = pose.rotation.transpose();
-    if (i < bounded_)
-      boxes_[i] = padded(p.mesh < 0 ? boundsOf(p.geom->shape, pose.rotation, pose.position)
-                                    : moved(meshes_[static_cast<std::size_t>(p.mesh)].triangles.bounds(), pose.rotation,
-                                            pose.position));
+    if (i >= bounded_) continue;
+    if (p.triangles)
+      boxes_[i] = padded(moved(p.triangles->bounds(), pose.rotation, pose.position));
+    else if (p.geom->shape.shape == Shape::heightField)
+      boxes_[i] = padded(moved(boundsOf(*p.geom->shape.heightField), pose.rotation, pose.position));
+    else
+      boxes_[i] = padded(boundsOf(p.geom->shape, pose.rotation, pose.position));
   }
   tree_.build(boxes_);
 }
@@ -130,13 +125,13 @@ void RayScene::place(const engine::Model& model, const engine::State& state) {
 /// Sets `hit` if the ray meets the geom within `length`.
 bool RayScene::cast(const Placed& p, const Vec3& from, const Vec3& direction, double length, GeomHit& hit) const {
   ShapeRay ray{p.toShape * (from - p.position), p.toShape * direction, length};
-  if (p.mesh < 0) {
+  if (!p.triangles) {
     castShape(ray, p.geom->shape);
   } else {
     std::uint32_t met = 0;
-    meshes_[static_cast<std::size_t>(p.mesh)].triangles.meet(ray.from, ray.direction, length, [&](std::uint32_t i) {
+    p.triangles->meet(ray.from, ray.direction, length, [&](std::uint32_t i) {
       ShapeRay one{ray.from, ray.direction, ray.nearest};
-      castTriangle(one, p.geom->shape, i);
+      castTriangle(one, *p.geom->shape.mesh, i);
       // At an edge of two triangles the last in their order counts.
       if (one.hit && (!ray.hit || one.nearest < ray.nearest || i > met)) ray = one, met = i;
       return ray.nearest;

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <atomic>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -26,7 +27,7 @@ class RayScene {
     const Stamp* at = at_.load(std::memory_order_acquire);
     return at && *at == stamp(model, poses);
   }
-  /// Forgets everything, as before the first update().
+  /// Forgets everything but the trees of meshes, as before the first update().
   void clear();
 
   /// As physics::castRay(). Of geoms at the same distance the last in the order of the model counts.
@@ -49,14 +50,13 @@ class RayScene {
   struct Placed {
     const engine::Geom* geom;
     engine::Index index;
-    int mesh;  ///< its tree in meshes_; -1: no mesh
+    const BoxTree* triangles;  ///< of a mesh or a hull; else nullptr
     Vec3 position;
     Mat3 toShape;  ///< from the world frame
   };
-  /// The triangles of a mesh.
-  struct Mesh {
-    std::uint64_t id = 0;        ///< of the geom
-    std::uint64_t contents = 0;  ///< hash of vertices and triangles
+  /// The triangles of a mesh; those of ended geoms end with the next collect().
+  struct MeshTree {
+    std::shared_ptr<const engine::Mesh> mesh;
     BoxTree triangles;
   };
   void collect(const engine::Model& model);
@@ -73,7 +73,8 @@ class RayScene {
   std::size_t bounded_ = 0;                 ///< number of those with bounds
   std::vector<Box> boxes_;                  ///< of those
   BoxTree tree_;
-  std::vector<Mesh> meshes_;
+  engine::MadeOf<engine::Mesh, MeshTree> trees_;
+  std::vector<std::shared_ptr<const MeshTree>> meshes_;  ///< those of placed_
 };
 
 }  // namespace spark::physics

@@ -4,6 +4,8 @@
 #include <array>
 #include <optional>
 
+#include "height_field.h"
+
 namespace spark::physics {
 
 using engine::Shape;
@@ -54,8 +56,10 @@ void castDisks(ShapeRay& ray, double radius, double halfLength) {
   }
 }
 
+}  // namespace
+
 /// Moeller and Trumbore 1997, "Fast, minimum storage ray/triangle intersection".
-void castFace(ShapeRay& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
+void castTriangle(ShapeRay& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a, ac = c - a, p = ray.direction.cross(ac);
   const double determinant = ab.dot(p);
   if (determinant == 0) return;
@@ -64,15 +68,8 @@ void castFace(ShapeRay& ray, const Vec3& a, const Vec3& b, const Vec3& c) {
   if (u >= 0 && v >= 0 && u + v <= 1) ray.take(ac.dot(q) / determinant, ab.cross(ac).normalized());
 }
 
-}  // namespace
-
-Vec3 vertexOf(const ShapeDescription& s, std::size_t corner) {
-  const double* v = &s.vertices[std::size_t{3} * s.triangles[corner]];
-  return {v[0], v[1], v[2]};
-}
-
-void castTriangle(ShapeRay& ray, const ShapeDescription& s, std::size_t triangle) {
-  castFace(ray, vertexOf(s, 3 * triangle), vertexOf(s, 3 * triangle + 1), vertexOf(s, 3 * triangle + 2));
+void castTriangle(ShapeRay& ray, const engine::Mesh& mesh, std::size_t triangle) {
+  castTriangle(ray, cornerOf(mesh, 3 * triangle), cornerOf(mesh, 3 * triangle + 1), cornerOf(mesh, 3 * triangle + 2));
 }
 
 void castShape(ShapeRay& ray, const ShapeDescription& s) {
@@ -93,8 +90,11 @@ void castShape(ShapeRay& ray, const ShapeDescription& s) {
       return ray.take((s.plane[3] - normal.dot(ray.from)) / normal.dot(ray.direction), normal.normalized());
     }
     case Shape::mesh:
-      for (std::size_t i = 0; i < s.triangles.size() / 3; ++i) castTriangle(ray, s, i);
+    case Shape::convex:
+      for (std::size_t i = 0; i < s.mesh->triangles.size() / 3; ++i) castTriangle(ray, *s.mesh, i);
       return;
+    case Shape::heightField:
+      return castHeightField(ray, *s.heightField);
     case Shape::ray:
       return;
   }

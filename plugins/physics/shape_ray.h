@@ -27,12 +27,14 @@ struct ShapeRay {
 
 /// Takes the nearest hit of a shape; of a mesh it tests every triangle.
 void castShape(ShapeRay& ray, const engine::ShapeDescription& shape);
+/// Takes the hit of a triangle.
+void castTriangle(ShapeRay& ray, const Vec3& a, const Vec3& b, const Vec3& c);
 /// Takes the hit of one triangle of a mesh.
-void castTriangle(ShapeRay& ray, const engine::ShapeDescription& mesh, std::size_t triangle);
+void castTriangle(ShapeRay& ray, const engine::Mesh& mesh, std::size_t triangle);
 /// A corner of the triangles of a mesh [m].
-Vec3 vertexOf(const engine::ShapeDescription& mesh, std::size_t corner);
-/// Radius of a sphere around the shape's origin that holds it [m]; infinite for planes, and for meshes, which would
-/// have to be measured.
+inline Vec3 cornerOf(const engine::Mesh& mesh, std::size_t corner) { return mesh.vertex(mesh.triangles[corner]); }
+/// Radius of a sphere around the shape's origin that holds it [m]; infinite for planes, and for meshes and height
+/// fields, which would have to be measured.
 double reach(const engine::ShapeDescription& shape);
 
 }  // namespace spark::physics

@@ -10,10 +10,10 @@ using engine::kNone;
 
 namespace {
 /// Passes what was loaded on, once.
-template <class F>
-void takeState(std::string& loaded, F&& load) {
-  if (loaded.empty()) return;
-  const std::string bytes = std::exchange(loaded, {});
+template <class Loaded, class F>
+void takeState(Loaded& loaded, F&& load) {
+  const std::string bytes = std::exchange(loaded, {}).bytes;
+  if (bytes.empty()) return;
   StateReader in(bytes);
   load(in);
 }
@@ -50,10 +50,12 @@ void Stepper::bringOwn(engine::IDetector& detector) {
 }
 
 void Stepper::save(StateWriter& out) const {
-  const auto write = [&](const std::string& loaded, auto&& save) {
-    StateWriter own(true);
-    if (loaded.empty()) save(own);
-    out.write(loaded.empty() ? own.bytes() : loaded);
+  // An engine may keep much that follows from what is hashed.
+  const auto write = [&](const Loaded& loaded, auto&& save) {
+    StateWriter own(out.keeps());
+    if (loaded.bytes.empty()) save(own);
+    out.write(loaded.bytes.empty() ? static_cast<std::int64_t>(own.hash()) : loaded.hash);
+    out.aside(loaded.bytes.empty() ? own.bytes() : loaded.bytes);
   };
   engine::ISolver* const solver = engine_.attached.present();
   engine::IDetector* const own = solver ? solver->detector() : nullptr;
@@ -67,22 +69,32 @@ void Stepper::save(StateWriter& out) const {
 }
 
 void Stepper::load(StateReader& in) {
-  detectorState_ = in.readString();
-  solverState_ = in.readString();
+  for (Loaded* l : {&detectorState_, &solverState_}) {
+    l->hash = in.readInteger();
+    l->bytes = in.readString();
+  }
 }
 
-void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
-                     engine::Contacts& out) {
+/// The detector, compiled, with the state that was loaded; nullptr if the engine finds contacts in its step, or nobody
+/// does.
+engine::IDetector* Stepper::bringDetector(engine::IEngine& engine, engine::ICollision* collision) {
   world_.compact();
   const auto compile = [&](engine::IDetector& d) { d.compile(data_.model, data_.state, world_.edited()); };
   engine::IDetector* const own = engine.capabilities().detects ? solver(engine).detector() : nullptr;
-  if (own || (collision && !engine.capabilities().late)) {
-    engine::IDetector& detector =
-        own ? *own : collision_.bring(*collision, data_.model, data_.model.collision, compile);
-    if (own) bringOwn(*own);
-    takeState(detectorState_, [&](StateReader& in) { detector.load(data_.model, in); });
-    detector.detect(data_.model, data_.state, filter, perPair, out);
-  }
+  if (!own && (!collision || engine.capabilities().late)) return nullptr;
+  engine::IDetector& detector = own ? *own : collision_.bring(*collision, data_.model, data_.model.collision, compile);
+  if (own) bringOwn(*own);
+  world_.clearEdited();
+  takeState(detectorState_, [&](StateReader& in) { detector.load(data_.model, data_.state, in); });
+  return &detector;
+}
+
+void Stepper::settle(engine::IEngine& engine, engine::ICollision* collision) { bringDetector(engine, collision); }
+
+void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
+                     engine::Contacts& out) {
+  if (engine::IDetector* const detector = bringDetector(engine, collision))
+    detector->detect(data_.model, data_.state, filter, perPair, out);
   world_.clearEdited();
   for (const Index i : data_.state.moved) data_.state.bodies[i].moved = false;
   data_.state.moved.clear();

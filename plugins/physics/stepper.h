@@ -31,6 +31,8 @@ class Stepper {
   void save(StateWriter& out) const;
   /// Reads it again; engines get it before their next detection or step. They throw Error then where it does not fit.
   void load(StateReader& in);
+  /// Behind load(), when all is loaded: passes on what the detector has to know before the world changes.
+  void settle(engine::IEngine& engine, engine::ICollision* collision);
   /// The bodies that were put back after the last step. Valid until the next step of the simulation.
   std::span<const BodyHandle> repaired() const { return repaired_; }
 
@@ -47,6 +49,7 @@ class Stepper {
   engine::ISolver& solver(engine::IEngine& engine);
   /// Compiles an engine's own detector where the model changed.
   void bringOwn(engine::IDetector& detector);
+  engine::IDetector* bringDetector(engine::IEngine& engine, engine::ICollision* collision);
 
   WorldModel& world_;
   WorldData& data_;
@@ -59,8 +62,13 @@ class Stepper {
     Vec3 force, torque;
   };
   std::vector<KeptForce> kept_;
-  bool again_ = false;                       ///< the next step is a further one
-  std::string detectorState_, solverState_;  ///< loaded, and not taken yet
+  bool again_ = false;  ///< the next step is a further one
+  /// What was loaded, and is not taken yet.
+  struct Loaded {
+    std::int64_t hash = 0;
+    std::string bytes;
+  };
+  Loaded detectorState_, solverState_;
   std::vector<engine::Index> wrong_;
   std::vector<BodyHandle> repaired_;
 };

@@ -56,6 +56,12 @@ void World::describe(Description<World>& d) {
           "Length of the engine's steps, of which a step of the simulation has a whole number: in each of them "
           "contacts "
           "are found and controllers act. 0: as the engine says.");
+  d.property("meshes", &World::meshes)
+      .ofProcess()
+      .doc("Number of different meshes and hulls that its colliders have; each is in memory once.");
+  d.property("meshLoads", &World::meshLoads)
+      .ofProcess()
+      .doc("How often a mesh file was read for its colliders; those with the same file and scale share one.");
 }
 
 void World::setBlock(const engine::Block& block) {
@@ -77,9 +83,20 @@ World& World::of(const Leaf& node) {
                   node.path()));
 }
 
+namespace {
+/// The server that steps the scene of a world; the usual one if none says so.
+PhysicsServer& serverOf(const World& world) {
+  std::vector<PhysicsServer*> all;
+  world.kernel().root().collect(all);
+  for (PhysicsServer* server : all)
+    if (server->isOf(*world.parent())) return *server;
+  return world.kernel().root().require<PhysicsServer>(IPhysicsServer::kPath);
+}
+}  // namespace
+
 void World::onLink() {
   PhysicsObject::onLink();
-  auto& server = kernel().root().require<PhysicsServer>(IPhysicsServer::kPath);
+  PhysicsServer& server = serverOf(*this);
   server.expectEngines();
   stepper_ = nullptr;  // it ends before its model does
   model_ = std::make_shared<physics::WorldModel>(server.exactReplay());

@@ -66,6 +66,8 @@ class World : public PhysicsObject, public engine::IExtended, public engine::IEx
   void setSurfaceLayer(double v) { parameters_.contactSurfaceLayer = v, apply(); }
   double timestep() const { return parameters_.timestep; }
   void setTimestep(double v) { parameters_.timestep = v, apply(); }
+  std::int64_t meshes() const { return model_ ? static_cast<std::int64_t>(model_->meshes().count()) : 0; }
+  std::int64_t meshLoads() const { return model_ ? model_->meshes().loads() : 0; }
   void apply();
 
   engine::WorldParameters parameters_;

@@ -100,6 +100,7 @@ void WorldModel::setMass(BodyHandle body, const engine::Mass& mass) {
         "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and "
         "products of inertia");
   engine::Body& b = model_.bodies[bodies_[body]];
+  if (b.mass == mass.mass && b.inertia == mass.inertia) return;
   b.mass = mass.mass;
   b.inertia = mass.inertia;
   b.inverseInertia = mass.inertia.inverse();
@@ -261,6 +262,8 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   }
   for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) take(v->data(), 3);
   ++s.version;
+  state_.loaded.resize(state_.bodies.size(), 0);
+  state_.loaded[i] = s.version;
   ++data_.poses;
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
@@ -314,6 +317,8 @@ void WorldModel::setBody(GeomHandle geom, BodyHandle body, const Pose& offset) {
   if (!inRange(offset.position) || !inRange(offset.rotation.data(), 9))
     throw Error("expected a finite offset of a collider");
   engine::Geom& g = model_.geoms[geoms_[geom]];
+  if (g.shape.shape == Shape::heightField && body != BodyHandle::none)
+    throw Error("a height field has no body: expected a TriMeshCollider or ConvexColliders on a body");
   g.body = g.shape.shape == Shape::plane ? kNone : bodies_[body];
   g.offset = offset;
   g.centred = g.body != kNone && offset.position.isZero(0) && offset.rotation.isIdentity(0);
@@ -366,6 +371,7 @@ void WorldModel::compact() {
   if (bodies_.removed() > 0) {
     const std::vector<Index> now = bodies_.compact(model_.bodies, state_.bodies);
     watch_.renumber(now);
+    state_.loaded.clear();
     for (engine::Geom& g : model_.geoms) remap(g.body, now);
     for (engine::Joint& j : model_.joints) remap(j.a, now), remap(j.b, now);
     remap(state_.moved, now);

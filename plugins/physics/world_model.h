@@ -7,6 +7,7 @@
 #include "body_watch.h"
 #include "element_handles.h"
 #include "joint_kinematics.h"
+#include "mesh_pool.h"
 #include "queries.h"
 
 namespace spark::physics {
@@ -89,13 +90,15 @@ class WorldModel {
   /// The index in the model.
   engine::Index index(BodyHandle body) const { return bodies_[body]; }
 
+  /// The meshes of its geoms, for those that make shapes.
+  MeshPool& meshes() { return meshes_; }
   /// Creates a static geom at the identity pose. Throws Error for an invalid shape.
   GeomHandle createGeom(SpaceHandle space, const engine::ShapeDescription& shape, void* owner);
   void destroyGeom(GeomHandle geom);
   /// Throws Error for an invalid shape; the geom keeps the old one.
   void setShape(GeomHandle geom, const engine::ShapeDescription& shape);
   /// Attaches the geom to a body, at an offset in the body's frame; none: static. Throws Error for an offset that is
-  /// not finite.
+  /// not finite, and for a height field with a body.
   void setBody(GeomHandle geom, BodyHandle body, const Pose& offset);
   /// Sets the world pose of a static geom. Planes ignore it.
   void setPose(GeomHandle geom, const Pose& pose);
@@ -202,6 +205,7 @@ class WorldModel {
   BodyWatch watch_{data_};
   Handles<BodyHandle> bodies_;
   Handles<SpaceHandle> spaces_;
+  MeshPool meshes_;
   Handles<GeomHandle> geoms_;
   Handles<JointHandle> joints_;
   std::vector<engine::Index> edited_;                    ///< see edited()

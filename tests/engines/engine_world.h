@@ -35,6 +35,11 @@ inline const EngineKind kEngines[] = {
     {"PointMassEngine", "point-masses"}, {"LateEngine", "late-contacts"},
 };
 
+/// A shape with triangles: a mesh, or a convex one.
+inline engine::ShapeDescription meshOf(engine::Mesh mesh, Shape shape = Shape::mesh) {
+  return {.shape = shape, .mesh = std::make_shared<const engine::Mesh>(std::move(mesh))};
+}
+
 struct EngineWorld : TestHost, engine::IContactSink {
   const EngineKind& kind;
   engine::ICollision* collision = nullptr;  ///< nullptr: the engine detects contacts

@@ -12,13 +12,13 @@ using namespace spark::test;
 
 namespace {
 
-engine::ShapeDescription meshOf(double edge) {
+engine::ShapeDescription meshBox(double edge) {
   const double h = edge / 2;
-  engine::ShapeDescription s{.shape = Shape::mesh};
+  engine::Mesh s;
   s.vertices = {-h, -h, -h, h, -h, -h, h, h, -h, -h, h, -h, -h, -h, h, h, -h, h, h, h, h, -h, h, h};
   s.triangles = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
                  1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
-  return s;
+  return {.shape = Shape::mesh, .mesh = std::make_shared<const engine::Mesh>(std::move(s))};
 }
 
 /// One body of each shape at a random pose.
@@ -30,7 +30,7 @@ struct Things : EngineWorld {
          {engine::ShapeDescription{.shape = Shape::box, .lengths = {0.6, 0.9, 0.4}},
           engine::ShapeDescription{.shape = Shape::sphere, .radius = 0.4},
           engine::ShapeDescription{.shape = Shape::capsule, .radius = 0.2, .length = 0.7},
-          engine::ShapeDescription{.shape = Shape::cylinder, .radius = 0.3, .length = 0.5}, meshOf(0.7)}) {
+          engine::ShapeDescription{.shape = Shape::cylinder, .radius = 0.3, .length = 0.5}, meshBox(0.7)}) {
       const BodyHandle b = body(vector() + Vec3(0, 0, 2));
       world.setRotation(b, Eigen::Quaterniond(number(), number(), number(), number()).normalized().toRotationMatrix());
       geoms.push_back(geom(s, b, {0.3 * vector(), Mat3::Identity()}));

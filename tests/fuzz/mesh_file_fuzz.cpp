@@ -1,17 +1,17 @@
-// Mesh files of MJCF: the first byte chooses the format. Indices are those of vertices, all numbers finite.
+// Mesh files: the first byte chooses the format. Indices are those of vertices, all numbers finite.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 
-#include "../../plugins/scene-mjcf/mesh_file.h"
+#include "../../plugins/meshes/mesh_file.h"
 #include "spark/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static constexpr const char* kNames[] = {"a.msh", "a.stl", "a.obj"};
+  static constexpr const char* kNames[] = {"a.msh", "a.stl", "a.obj", "a.dae", "a.glb"};
   if (size == 0) return 0;
   try {
     const auto shape =
-        spark::mjcf::readMesh(kNames[data[0] % 3], std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
+        spark::meshes::readMesh(kNames[data[0] % 5], std::string(reinterpret_cast<const char*>(data) + 1, size - 1));
     if (shape.vertices.empty() || shape.vertices.size() % 3 != 0 || shape.triangles.size() % 3 != 0) std::abort();
     for (const auto v : shape.triangles)
       if (v >= shape.vertices.size() / 3) std::abort();

@@ -168,6 +168,31 @@ TEST_CASE("effectors of other joints have their own units and limits") {
     CHECK(robot.joint->velocity(1) == Approx(4 * kPi));
     CHECK(robot.joint->velocity(0) == 0);
   }
+  SECTION("slider: metres per second") {
+    auto& lift = robot.add(engine::JointType::slider, "SliderEffector", "lift");
+    CHECK(robot.act(lift, "(lift -0.5)").empty());
+    CHECK(robot.joint->velocity(0) == -0.5);
+    CHECK(robot.act(lift, "(lift 50)").empty());
+    CHECK(robot.joint->velocity(0) == 2);
+    robot.joint->type = engine::JointType::hinge;
+  }
+  SECTION("angular motor with several axes: a speed for each") {
+    auto& motor = robot.transform->create<FakeJoint>("FakeJoint", "motor");
+    motor.type = engine::JointType::angularMotor;
+    motor.count = 3;
+    auto& effector = motor.create<Effector>("AngularMotorEffector", "shoulder");
+    CHECK(robot.act(effector, "(shoulder 1 -2 3)").empty());
+    CHECK(motor.velocity(0) == 1);
+    CHECK(motor.velocity(1) == -2);
+    CHECK(motor.velocity(2) == 3);
+    CHECK(robot.act(effector, "(shoulder 4)").empty());
+    CHECK(motor.velocity(0) == 4);
+    CHECK(motor.velocity(1) == -2);
+    CHECK(robot.act(effector, "(shoulder 1 x)") == "expected a number as argument 2, found 'x', which counts as 0");
+    motor.device.disabled = true;
+    CHECK(robot.act(effector, "(shoulder 1 1 1)").empty());
+    CHECK(motor.velocity(2) == 0);
+  }
   SECTION("angular motor: the hinge's maximum speed applies too") {
     auto& motor = robot.joint->create<FakeJoint>("FakeJoint", "motor");
     motor.type = engine::JointType::angularMotor;
@@ -337,6 +362,23 @@ TEST_CASE("invalid commands of an actuator are refused and change nothing") {
   CHECK(law.force == 0);
 }
 
+TEST_CASE("the steering effector turns its wheel to the last angle, as fast as it may, in each cycle") {
+  Robot robot;
+  auto& steering = robot.add(engine::JointType::hinge2, "SteeringEffector", "lf");
+  CHECK(robot.act(steering, "(lf 5)").empty());
+  CHECK(robot.joint->velocity(0) == 0);
+  robot.prepare();
+  CHECK(robot.joint->velocity(0) == Approx(10 * degToRad(5)));
+  robot.joint->angles[0] = degToRad(6);
+  robot.prepare();
+  CHECK(robot.joint->velocity(0) == Approx(-10 * degToRad(1)));
+  robot.act(steering, "(lf -90)");
+  CHECK(getProperty(steering, "angle").toNumber() == -40);
+  robot.prepare();
+  CHECK(robot.joint->velocity(0) == Approx(-degToRad(180)));
+  CHECK(robot.joint->velocity(1) == 0);
+}
+
 TEST_CASE("every effector reports arguments that are missing, of another type or superfluous") {
   struct Case {
     engine::JointType above;
@@ -345,7 +387,8 @@ TEST_CASE("every effector reports arguments that are missing, of another type or
   using engine::JointType;
   const Case c = GENERATE(
       Case{JointType::hinge, "HingeEffector", "1"}, Case{JointType::universal, "UniversalJointEffector", "1 2"},
-      Case{JointType::hinge2, "Hinge2Effector", "1"}, Case{JointType::angularMotor, "AngularMotorEffector", "1"},
+      Case{JointType::hinge2, "Hinge2Effector", "1"}, Case{JointType::hinge2, "SteeringEffector", "1"},
+      Case{JointType::angularMotor, "AngularMotorEffector", "1"}, Case{JointType::slider, "SliderEffector", "1"},
       Case{JointType::hinge, "ControlEffector", "1 2 3 4 5"}, Case{JointType::hinge, "ActuatorEffector", "1"},
       Case{JointType::hinge, "ForceEffector", "1 2 3"}, Case{JointType::hinge, "AgentSyncEffector", ""});
   CAPTURE(c.className);

@@ -45,12 +45,12 @@ std::vector<Feedback> chainForces(EngineWorld& w, bool loop) {
 
 /// A box as a mesh.
 engine::ShapeDescription meshBox(const Vec3& edges) {
-  engine::ShapeDescription s{.shape = Shape::mesh};
+  engine::Mesh s;
   for (int i = 0; i < 8; ++i)
     for (int k = 0; k < 3; ++k) s.vertices.push_back((i >> k & 1 ? 0.5 : -0.5) * edges[k]);
   s.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                  2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-  return s;
+  return {.shape = Shape::mesh, .mesh = std::make_shared<const engine::Mesh>(std::move(s))};
 }
 
 }  // namespace

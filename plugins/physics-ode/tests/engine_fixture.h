@@ -86,13 +86,12 @@ inline engine::ShapeDescription ray(const Vec3& from, const Vec3& direction, dou
 }
 /// A cube with edges of length `e` as a triangle mesh.
 inline engine::ShapeDescription mesh(double e) {
-  engine::ShapeDescription s;
-  s.shape = engine::Shape::mesh;
   const double h = e / 2;
-  s.vertices = {-h, -h, -h, h, -h, -h, h, h, -h, -h, h, -h, -h, -h, h, h, -h, h, h, h, h, -h, h, h};
-  s.triangles = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
+  engine::Mesh m;
+  m.vertices = {-h, -h, -h, h, -h, -h, h, h, -h, -h, h, -h, -h, -h, h, h, -h, h, h, h, h, -h, h, h};
+  m.triangles = {0, 2, 1, 0, 3, 2, 4, 5, 6, 4, 6, 7, 0, 1, 5, 0, 5, 4,
                  1, 2, 6, 1, 6, 5, 2, 3, 7, 2, 7, 6, 3, 0, 4, 3, 4, 7};
-  return s;
+  return {.shape = engine::Shape::mesh, .mesh = std::make_shared<const engine::Mesh>(std::move(m))};
 }
 
 }  // namespace spark::test

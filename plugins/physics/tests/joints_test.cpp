@@ -391,3 +391,28 @@ TEST_CASE("a script that sets a motor ends the controller, and one that sets a c
   CHECK(rate() == Approx(-90).epsilon(0.05));
   CHECK(number(j, "getMaxMotorForce", {0}) == 0);
 }
+
+TEST_CASE("a piston slides and turns: a slider and a hinge with a connector between them") {
+  PhysicsHost host;
+  setProperty(host.scene.require<Leaf>("world"), "gravity", List{0.0, 0.0, 0.0});
+  Node& between = host.thing("between", {0, 0, 1});
+  host.call(*between.find("body"), "setSphereTotal", {0.2, 0.1});
+  setProperty(*between.find("body"), "connector", true);
+  Node& rod = host.thing("rod", {0, 0, 1});
+  host.call(*rod.find("body"), "setCylinderTotal", {1.0, 0.1, 0.5});
+  Leaf& slider = between.create("SliderJoint", "slider");
+  host.call(slider, "attach", {"../body"});
+  Leaf& hinge = rod.create("HingeJoint", "hinge");
+  host.call(hinge, "attach", {"../body", "../../between/body"});
+  host.call(hinge, "setAnchor", {0.0, 0.0, 0.0});
+  host.call(hinge, "setAxis", {0.0, 0.0, 1.0});
+  for (Leaf* j : {&slider, &hinge}) host.call(*j, "setMaxMotorForce", {0, 100.0});
+  host.call(slider, "setLinearMotorVelocity", {0, 0.2});
+  host.call(hinge, "setAngularMotorVelocity", {0, 90.0});
+  host.step(50);
+  CHECK(host.call(slider, "getPosition").toNumber() == Approx(0.2).margin(0.01));
+  CHECK(host.call(hinge, "getAngle").toNumber() == Approx(90).margin(4));
+  const engine::BodyState s = host.body(rod).state();
+  CHECK((s.position - Vec3(0, 0, 1.2)).norm() < 0.02);
+  CHECK(s.rotation(2, 2) > 0.999);
+}

@@ -12,6 +12,10 @@ using engine::Shape;
 
 namespace {
 
+engine::ShapeDescription meshOf(engine::Mesh mesh, Shape shape = Shape::mesh) {
+  return {.shape = shape, .mesh = std::make_shared<const engine::Mesh>(std::move(mesh))};
+}
+
 /// A scene of shapes at random poses that stand still.
 struct RandomScene {
   std::mt19937 random;
@@ -40,7 +44,7 @@ struct RandomScene {
     ++model.structure;
   }
   engine::ShapeDescription randomShape() {
-    switch (std::uniform_int_distribution<int>(0, 4)(random)) {
+    switch (std::uniform_int_distribution<int>(0, 6)(random)) {
       case 0:
         return {.shape = Shape::box, .lengths = vector(1).cwiseAbs() + Vec3::Constant(0.05)};
       case 1:
@@ -49,18 +53,30 @@ struct RandomScene {
         return {.shape = Shape::capsule, .radius = number(0.05, 0.5), .length = number(0.05, 2)};
       case 3:
         return {.shape = Shape::cylinder, .radius = number(0.05, 0.7), .length = number(0.05, 2)};
+      case 4:
+        return tetrahedron(Shape::mesh);
+      case 5:
+        return tetrahedron(Shape::convex);
       default:
-        return tetrahedron();
+        return hills();
     }
   }
-  engine::ShapeDescription tetrahedron() {
-    engine::ShapeDescription s{.shape = Shape::mesh};
+  engine::ShapeDescription hills() {
+    const auto edge = [this] { return std::uniform_int_distribution<int>(2, 7)(random); };
+    engine::HeightField f{edge(), edge(), number(0.3, 3), number(0.3, 3), {}, 0, 0};
+    for (int i = 0; i < f.columns * f.rows; ++i) f.heights.push_back(static_cast<float>(number(-0.3, 0.3)));
+    const auto [low, high] = std::minmax_element(f.heights.begin(), f.heights.end());
+    f.low = *low, f.high = *high;
+    return {.shape = Shape::heightField, .heightField = std::make_shared<const engine::HeightField>(std::move(f))};
+  }
+  engine::ShapeDescription tetrahedron(Shape shape) {
+    engine::Mesh s;
     for (const Vec3& corner : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
       const Vec3 v = 0.6 * corner + vector(0.3);
       s.vertices.insert(s.vertices.end(), {v.x(), v.y(), v.z()});
     }
     s.triangles = {0, 1, 2, 0, 3, 1, 0, 2, 3, 1, 3, 2};
-    return s;
+    return meshOf(std::move(s), shape);
   }
   /// Distance from a point to the nearest surface [m]; 0 or less inside of a shape other than a mesh.
   double distanceToNearest(const Vec3& point) const {
@@ -119,13 +135,13 @@ TEST_CASE("RayScene finds the geom, the distance and the normal that a test of e
 TEST_CASE("RayScene meets the edge of two triangles as a test of every triangle does", "[senses]") {
   RandomScene s(1, 0);
   // A square fan around the origin of slanted triangles, with all of its edges along the axes.
-  engine::ShapeDescription fan{.shape = Shape::mesh, .vertices = {0, 0, 1}};
+  engine::Mesh fan{{0, 0, 1}, {}};
   for (int i = 0; i < 16; ++i)
     for (const double v : {std::cos(kPi * i / 8), std::sin(kPi * i / 8), i % 2 == 0 ? 0.0 : 0.5})
       fan.vertices.push_back(v);
   for (std::uint32_t i = 0; i < 16; ++i)
     fan.triangles.insert(fan.triangles.end(), {0, 1 + (i * 5) % 16, 1 + (i * 5 + 1) % 16});
-  s.add(fan);
+  s.add(meshOf(fan));
   s.model.geoms[0].offset = {Vec3::Zero(), Mat3::Identity()};
   RayScene rays;
   rays.update(s.model, s.state, 1);
@@ -139,11 +155,10 @@ TEST_CASE("RayScene meets the edge of two triangles as a test of every triangle 
 }
 
 TEST_CASE("a triangle without area is as far as its edges", "[senses]") {
-  engine::ShapeDescription mesh{.shape = Shape::mesh, .vertices = {0, 0, 0, 1, 0, 0, 2, 0, 0}, .triangles = {0, 1, 2}};
-  CHECK(distanceTo(mesh, {0.5, 3, 0}) == Approx(3));
-  CHECK(distanceTo(mesh, {3, 0, 0}) == Approx(1));
-  mesh.triangles = {1, 1, 1};
-  CHECK(distanceTo(mesh, {1, 0, 2}) == Approx(2));
+  const engine::Mesh flat{{0, 0, 0, 1, 0, 0, 2, 0, 0}, {0, 1, 2}}, point{{0, 0, 0, 1, 0, 0, 2, 0, 0}, {1, 1, 1}};
+  CHECK(distanceTo(meshOf(flat), {0.5, 3, 0}) == Approx(3));
+  CHECK(distanceTo(meshOf(flat), {3, 0, 0}) == Approx(1));
+  CHECK(distanceTo(meshOf(point), {1, 0, 2}) == Approx(2));
 }
 
 TEST_CASE("RayScene finds the overlaps that a test of every geom finds, in the same order", "[senses]") {
@@ -209,7 +224,7 @@ TEST_CASE("RayScene follows bodies, changed shapes and removed geoms", "[senses]
   CHECK(rays.isCurrent(s.model, 1));
   CHECK_FALSE(rays.isCurrent(s.model, 2));
   CHECK(distance(2) == Approx(4.5));
-  s.model.geoms[0].shape = s.tetrahedron();
+  s.model.geoms[0].shape = s.tetrahedron(Shape::mesh);
   ++s.model.collision;
   CHECK_FALSE(rays.isCurrent(s.model, 2));
   CHECK(distance(2) == Approx(castRay(s.model, s.state, Vec3::Zero(), Vec3::UnitX(), 10, {})->distance));

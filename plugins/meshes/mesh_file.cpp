@@ -1,0 +1,180 @@
+#include "mesh_file.h"
+
+#include <assimp/BaseImporter.h>
+#include <assimp/config.h>
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <array>
+#include <assimp/IOStream.hpp>
+#include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <sstream>
+
+#define TINYOBJLOADER_IMPLEMENTATION
+#include <tiny_obj_loader.h>
+
+#include "spark/error.h"
+
+namespace spark::meshes {
+
+using engine::Mesh;
+
+namespace {
+/// Files that a mesh file names, such as materials, are not opened: they would be any file of this machine.
+struct NoFiles : Assimp::IOSystem {
+  bool Exists(const char*) const override { return false; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
+  void Close(Assimp::IOStream*) override {}
+};
+
+/// Leaves the readers of one format. Otherwise assimp, when they do not take a file, looks for another one by words in
+/// it, and some of the others crash on damaged files. Throws Error if there is none.
+void keepReadersOf(const std::string& format, Assimp::Importer& importer) {
+  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
+    const std::string formats = fmt::format(" {} ", importer.GetImporterInfo(i)->mFileExtensions);
+    if (!format.empty() && formats.find(' ' + format + ' ') != std::string::npos) continue;
+    const std::unique_ptr<Assimp::BaseImporter> other(importer.GetImporter(i));
+    importer.UnregisterLoader(other.get());
+  }
+  if (importer.GetImporterCount() == 0)
+    throw Error(fmt::format("expected a mesh file of a known kind, such as .obj, .stl, .dae, .glb or .msh, found '.{}'",
+                            format));
+}
+
+/// MuJoCo's format: the numbers of vertices, normals, texture coordinates and faces, then these arrays, in the byte
+/// order of x86 (MuJoCo's documentation, "MSH file").
+Mesh readMsh(const std::string& bytes) {
+  std::array<std::int32_t, 4> counts{};
+  constexpr std::size_t kHeader = sizeof counts;
+  if (bytes.size() < kHeader)
+    throw Error(fmt::format("expected a header of {} bytes, found {}", kHeader, bytes.size()));
+  std::memcpy(counts.data(), bytes.data(), kHeader);
+  std::size_t expected = kHeader;
+  const std::size_t numbers[] = {3, 3, 2, 3};
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (counts[i] < 0) throw Error("expected numbers of 0 or more in the header");
+    expected += 4 * numbers[i] * static_cast<std::size_t>(counts[i]);
+  }
+  if (bytes.size() != expected) throw Error(fmt::format("expected {} bytes, found {}", expected, bytes.size()));
+  Mesh s;
+  const auto vertices = static_cast<std::size_t>(counts[0]), faces = static_cast<std::size_t>(counts[3]);
+  for (std::size_t i = 0; i < 3 * vertices; ++i) {
+    float v = 0;
+    std::memcpy(&v, bytes.data() + kHeader + 4 * i, 4);
+    if (!std::isfinite(v)) throw Error("expected finite numbers");
+    s.vertices.push_back(v);
+  }
+  for (std::size_t i = 0; i < 3 * faces; ++i) {
+    std::uint32_t v = 0;
+    std::memcpy(&v, bytes.data() + bytes.size() - 12 * faces + 4 * i, 4);
+    if (v >= vertices) throw Error(fmt::format("expected indices of the {} vertices in faces, found {}", vertices, v));
+    s.triangles.push_back(v);
+  }
+  if (s.vertices.empty()) throw Error("expected vertices, found none");
+  return s;
+}
+
+/// Vertices and faces of an OBJ file, whose polygons become fans of triangles.
+struct ObjFile {
+  Mesh mesh;
+  void addFace(std::span<const tinyobj::index_t> corners) {
+    const auto vertices = static_cast<long>(mesh.vertices.size() / 3);
+    const auto vertex = [vertices](const tinyobj::index_t& corner) {
+      const int number = corner.vertex_index;
+      const long v = number < 0 ? vertices + number : number - 1L;  // counted from 1, or backwards from the last one
+      if (v < 0 || v >= vertices)
+        throw Error(fmt::format("expected a face of its {} vertices, found number {}", vertices, number));
+      return static_cast<std::uint32_t>(v);
+    };
+    for (const tinyobj::index_t& corner : corners) vertex(corner);
+    for (std::size_t i = 2; i < corners.size(); ++i)
+      for (const std::size_t c : {std::size_t{0}, i - 1, i}) mesh.triangles.push_back(vertex(corners[c]));
+  }
+};
+
+/// Throws Error for a vertex that is not three finite numbers, which the reader would take for 0.
+void checkVertices(std::string_view text) {
+  for (std::size_t line = 1; !text.empty(); ++line) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    std::string_view rest = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    const auto skipBlanks = [&rest] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r"), rest.size())); };
+    skipBlanks();
+    if (!rest.starts_with("v ") && !rest.starts_with("v\t")) continue;
+    rest.remove_prefix(1);
+    for (int i = 0; i < 3; ++i) {
+      skipBlanks();
+      if (rest.starts_with('+')) rest.remove_prefix(1);
+      double number = 0;
+      const auto [next, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+      if (error != std::errc() || !std::isfinite(number))
+        throw Error(fmt::format("line {}: expected three finite numbers of a vertex, found '{}'", line,
+                                rest.substr(0, std::min<std::size_t>(rest.find_first_of(" \t\r"), 40))));
+      rest.remove_prefix(static_cast<std::size_t>(next - rest.data()));
+    }
+  }
+}
+
+Mesh readObj(const std::string& bytes) {
+  checkVertices(bytes);
+  tinyobj::callback_t callbacks;
+  callbacks.vertex_cb = [](void* file, float x, float y, float z, float) {
+    for (const float c : {x, y, z}) {
+      if (!std::isfinite(c)) throw Error("expected finite numbers");
+      static_cast<ObjFile*>(file)->mesh.vertices.push_back(c);
+    }
+  };
+  callbacks.index_cb = [](void* file, tinyobj::index_t* corners, int count) {
+    static_cast<ObjFile*>(file)->addFace({corners, static_cast<std::size_t>(count)});
+  };
+  ObjFile out;
+  std::istringstream stream(bytes);
+  std::string warning, error;
+  tinyobj::LoadObjWithCallback(stream, callbacks, &out, nullptr, &warning, &error);
+  if (out.mesh.vertices.empty()) throw Error("expected vertices, found none");
+  return std::move(out.mesh);
+}
+
+}  // namespace
+
+Mesh readMesh(const std::string& name, const std::string& bytes) {
+  const std::size_t dot = name.rfind('.');
+  std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
+  for (char& c : format) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  if (format == "msh") return readMsh(bytes);
+  if (format == "obj") return readObj(bytes);
+  Mesh s;
+  Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // which owns it
+  keepReadersOf(format, importer);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* const scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
+      format.c_str());
+  if (!scene) throw Error(importer.GetErrorString());
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene->mMeshes[m];
+    if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
+    const auto first = static_cast<std::uint32_t>(s.vertices.size() / 3);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+      for (const float c : {mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z}) {
+        if (!std::isfinite(c)) throw Error("expected vertices of finite numbers");
+        s.vertices.push_back(c);
+      }
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
+      for (unsigned i = 0; i < 3; ++i) s.triangles.push_back(first + mesh.mFaces[f].mIndices[i]);
+  }
+  if (s.triangles.empty()) throw Error("expected triangles, found none");
+  return s;
+}
+
+}  // namespace spark::meshes

@@ -1,0 +1,153 @@
+#include "../mesh_file.h"
+
+#include <catch2/catch.hpp>
+#include <cstring>
+
+#include "../hull.h"
+#include "spark/error.h"
+
+using namespace spark;
+using meshes::hullOf;
+using meshes::readMesh;
+
+// A tetrahedron in each format. It spans 0..1 along each axis.
+
+namespace {
+
+const char* const kObj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+std::string stl() {
+  std::string out(80, ' ');
+  const auto put = [&out](const auto& v) { out.append(reinterpret_cast<const char*>(&v), sizeof v); };
+  const float corners[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  put(std::uint32_t{4});
+  for (const auto& f : faces) {
+    for (int i = 0; i < 3; ++i) put(0.0f);
+    for (const int corner : f)
+      for (const float v : corners[corner]) put(v);
+    put(std::uint16_t{0});
+  }
+  return out;
+}
+
+const char* const kDae = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1"><asset><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="12">0 0 0 1 0 0 0 1 0 0 0 1</float_array><technique_common>
+<accessor source="#a" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="4"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 1 0 1 3 0 3 2 1 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+
+std::string glb() {
+  std::string json =
+      R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+      R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+      R"("accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},)"
+      R"({"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}],)"
+      R"("bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],)"
+      R"("buffers":[{"byteLength":72}]})";
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  std::string binary;
+  for (const float v : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f})
+    binary.append(reinterpret_cast<const char*>(&v), 4);
+  for (const std::uint16_t i : {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3})
+    binary.append(reinterpret_cast<const char*>(&i), 2);
+  std::string out = "glTF";
+  const auto put = [&out](std::size_t v) {
+    const auto n = static_cast<std::uint32_t>(v);
+    out.append(reinterpret_cast<const char*>(&n), 4);
+  };
+  put(2), put(12 + 8 + json.size() + 8 + binary.size());
+  put(json.size()), out += "JSON" + json;
+  put(binary.size()), out.append("BIN\0", 4), out += binary;
+  return out;
+}
+
+double volumeOf(const engine::Mesh& m) {
+  double volume = 0;
+  for (std::size_t t = 0; t < m.triangles.size(); t += 3) {
+    Mat3 corners;
+    for (std::size_t i = 0; i < 3; ++i) corners.col(static_cast<int>(i)) = m.vertex(m.triangles[t + i]);
+    volume += corners.determinant() / 6;
+  }
+  return volume;
+}
+
+}  // namespace
+
+TEST_CASE("A mesh is the same in each format: obj, stl, dae, glb") {
+  const std::pair<const char*, std::string> files[] = {
+      {"a.obj", kObj}, {"A.STL", stl()}, {"a.dae", kDae}, {"models/a.glb", glb()}};
+  for (const auto& [name, bytes] : files) {
+    INFO(name);
+    const engine::Mesh m = readMesh(name, bytes);
+    CHECK(m.triangles.size() == 12);
+    CHECK(volumeOf(m) == Approx(1.0 / 6));
+    CHECK(*std::max_element(m.vertices.begin(), m.vertices.end()) == 1);
+    CHECK(*std::min_element(m.vertices.begin(), m.vertices.end()) == 0);
+  }
+}
+
+TEST_CASE("A mesh file that is cut off anywhere ends in an error or a whole mesh") {
+  const std::pair<const char*, std::string> files[] = {
+      {"a.obj", kObj}, {"a.stl", stl()}, {"a.dae", kDae}, {"a.glb", glb()}};
+  for (const auto& [name, bytes] : files)
+    for (std::size_t size = 0; size < bytes.size(); size += 7) {
+      INFO(name << " of " << size << " bytes");
+      try {
+        const engine::Mesh m = readMesh(name, bytes.substr(0, size));
+        CHECK_FALSE(m.vertices.empty());
+        for (const std::uint32_t i : m.triangles) CHECK(i < m.vertices.size() / 3);
+      } catch (const Error& e) {
+        CHECK(std::string(e.what()) != "");
+      }
+    }
+}
+
+TEST_CASE("Numbers that are none are refused in each format") {
+  for (const char* bad : {"nan 0 0", "0 inf 0", "0 0 x", "0 1", "", "1e999 0 0"})
+    CHECK_THROWS_WITH(readMesh("a.obj", std::string("v 1 0 0\nv ") + bad + "\nv 0 1 0\nf 1 2 3\n"),
+                      Catch::Contains("line 2: expected three finite numbers"));
+  CHECK(readMesh("a.obj", " v\t1 +2.5 -3e-2 1 \r\n").vertices.size() == 3);
+  std::string infinite = stl();
+  const float bad = HUGE_VALF;
+  std::memcpy(infinite.data() + 84 + 12, &bad, 4);
+  CHECK_THROWS_WITH(readMesh("a.stl", infinite), Catch::Contains("finite"));
+  std::string withNan = glb();
+  const float nan = std::nanf("");
+  std::memcpy(withNan.data() + withNan.size() - 72, &nan, 4);
+  CHECK_THROWS_AS(readMesh("a.glb", withNan), Error);
+}
+
+TEST_CASE("A mesh file without triangles, or of an unknown kind, is refused with a reason") {
+  CHECK_THROWS_WITH(readMesh("a.obj", ""), Catch::Contains("expected vertices, found none"));
+  CHECK_THROWS_AS(readMesh("a.stl", "no mesh"), Error);
+  CHECK_THROWS_WITH(readMesh("a.txt", kObj), Catch::Contains("such as .obj, .stl, .dae, .glb or .msh, found '.txt'"));
+  CHECK_THROWS_WITH(readMesh("a", stl()), Catch::Contains("expected a mesh file of a known kind"));
+  // It would be read as what it is, by a reader that nobody asked for.
+  CHECK_THROWS_AS(readMesh("a.glb", kObj), Error);
+}
+
+TEST_CASE("A convex hull has the corners alone, and triangles that point outwards") {
+  std::vector<double> points;
+  for (int i = 0; i < 8; ++i)
+    for (int k = 0; k < 3; ++k) points.push_back((i >> k) & 1);
+  points.insert(points.end(), {0.5, 0.5, 0.5, 0.5, 0.2, 0.9});
+  const engine::Mesh hull = hullOf(points);
+  CHECK(hull.vertices.size() == 24);
+  CHECK(hull.triangles.size() == 36);
+  CHECK(volumeOf(hull) == Approx(1));
+}
+
+TEST_CASE("Points in a plane, on a line, in one place, too few or not finite have no hull") {
+  CHECK_THROWS_WITH(hullOf({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0}), Catch::Contains("span a volume"));
+  CHECK_THROWS_WITH(hullOf({0, 0, 0, 1, 0, 0, 2, 0, 0, 3, 0, 0}), Catch::Contains("span a volume"));
+  CHECK_THROWS_AS(hullOf({1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1}), Error);
+  CHECK_THROWS_WITH(hullOf({0, 0, 0}), Catch::Contains("at least 4"));
+  CHECK_THROWS_WITH(hullOf({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, HUGE_VAL}), Catch::Contains("finite"));
+}

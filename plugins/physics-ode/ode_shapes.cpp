@@ -1,0 +1,145 @@
+#include "ode_shapes.h"
+
+#include <Eigen/Geometry>
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
+
+namespace spark::ode {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+OdeMesh::OdeMesh(std::shared_ptr<const engine::Mesh> from) : mesh(std::move(from)), data(dGeomTriMeshDataCreate()) {
+  dGeomTriMeshDataBuildDouble(data, mesh->vertices.data(), 3 * sizeof(double),
+                              static_cast<int>(mesh->vertices.size() / 3), mesh->triangles.data(),
+                              static_cast<int>(mesh->triangles.size()), 3 * sizeof(std::uint32_t));
+  // Contacts with convex shapes need the angles at the edges.
+  dGeomTriMeshDataPreprocess2(data, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
+}
+
+OdeHull::OdeHull(std::shared_ptr<const engine::Mesh> mesh) : hull(std::move(mesh)), probe(create(nullptr)) {}
+
+OdeHull::~OdeHull() { destroyGeom(probe); }
+
+dGeomID OdeHull::create(dSpaceID space) const {
+  return dCreateConvex(space, hull.planes().data(), static_cast<unsigned>(hull.faces().size()), hull.corners().data(),
+                       static_cast<unsigned>(hull.corners().size() / 3), hull.polygons().data());
+}
+
+OdeHeights::OdeHeights(std::shared_ptr<const engine::HeightField> from)
+    : field(std::move(from)), data(dGeomHeightfieldDataCreate()) {
+  const engine::HeightField& f = *field;
+  const auto height = [](void* context, int x, int z) -> dReal {
+    const auto& own = *static_cast<const engine::HeightField*>(context);
+    return own.height(x, own.rows - 1 - z);
+  };
+  // What sinks in by less than this is still met from below [m].
+  constexpr double kThickness = 1;
+  dGeomHeightfieldDataBuildCallback(data, const_cast<engine::HeightField*>(&f), height, f.width, f.depth, f.columns,
+                                    f.rows, 1, 0, kThickness, 0);
+  dGeomHeightfieldDataSetBounds(data, f.low, f.high);
+}
+
+Mat3 OdeHeights::toShape() {
+  Mat3 m;
+  m << Vec3::UnitX(), Vec3::UnitZ(), -Vec3::UnitY();
+  return m;
+}
+
+namespace {
+
+/// ODE keeps the pose of a destroyed geom for the next one that is created, in whichever thread, and exchanges it
+/// atomically. The thread sanitizer cannot see that within a library: it is told of the order by this tag.
+#ifdef __SANITIZE_THREAD__
+char posesOrder;
+void posePutBack() { __tsan_release(&posesOrder); }
+void poseTaken() { __tsan_acquire(&posesOrder); }
+#else
+void posePutBack() {}
+void poseTaken() {}
+#endif
+
+/// A rotation that turns the z axis to `direction`.
+Mat3 alongZ(const Vec3& direction) {
+  const Vec3 z = direction.normalized();
+  const Vec3 x = z.unitOrthogonal();
+  Mat3 m;
+  m << x, z.cross(x), z;
+  return m;
+}
+dGeomID create(const ShapeDescription& s, dSpaceID space, MadeShapes& made, SharedShape& shared) {
+  shared = {};
+  switch (s.shape) {
+    case Shape::box:
+      return dCreateBox(space, s.lengths.x(), s.lengths.y(), s.lengths.z());
+    case Shape::sphere:
+      return dCreateSphere(space, s.radius);
+    case Shape::capsule:
+      return dCreateCapsule(space, s.radius, s.length);
+    case Shape::cylinder:
+      return dCreateCylinder(space, s.radius, s.length);
+    case Shape::plane: {
+      const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
+      return dCreatePlane(space, s.plane[0] / n, s.plane[1] / n, s.plane[2] / n, s.plane[3] / n);
+    }
+    case Shape::ray:
+      return dCreateRay(space, s.length);
+    case Shape::mesh:
+      shared.mesh = made.meshes.get(s.mesh, [](const auto& mesh) { return std::make_shared<OdeMesh>(mesh); });
+      return dCreateTriMesh(space, shared.mesh->data, nullptr, nullptr, nullptr);
+    case Shape::convex:
+      shared.hull = made.hulls.get(s.mesh, [](const auto& mesh) { return std::make_shared<OdeHull>(mesh); });
+      return shared.hull->create(space);
+    case Shape::heightField:
+      shared.heights =
+          made.heights.get(s.heightField, [](const auto& field) { return std::make_shared<OdeHeights>(field); });
+      return dCreateHeightfield(space, shared.heights->data, 1);
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+dGeomID createGeom(const ShapeDescription& s, dSpaceID space, MadeShapes& made, SharedShape& shared) {
+  const dGeomID geom = create(s, space, made, shared);
+  poseTaken();
+  return geom;
+}
+
+void destroyGeom(dGeomID geom) {
+  posePutBack();
+  dGeomDestroy(geom);
+}
+
+bool reshape(dGeomID geom, const ShapeDescription& from, const ShapeDescription& to) {
+  if (from.shape != to.shape) return false;
+  switch (to.shape) {
+    case Shape::box:
+      dGeomBoxSetLengths(geom, to.lengths.x(), to.lengths.y(), to.lengths.z());
+      return true;
+    case Shape::sphere:
+      dGeomSphereSetRadius(geom, to.radius);
+      return true;
+    case Shape::capsule:
+      dGeomCapsuleSetParams(geom, to.radius, to.length);
+      return true;
+    default:
+      return false;
+  }
+}
+
+Pose frameOf(const ShapeDescription& s, const SharedShape& shared) {
+  switch (s.shape) {
+    case Shape::ray:
+      return {s.rayOrigin, alongZ(s.rayDirection)};
+    case Shape::convex:
+      return {shared.hull->hull.center(), Mat3::Identity()};
+    case Shape::heightField:
+      return {Vec3::Zero(), OdeHeights::toShape()};
+    default:
+      return {};
+  }
+}
+
+}  // namespace spark::ode

@@ -1,0 +1,69 @@
+#pragma once
+/// \file
+/// What ODE needs of meshes, hulls and height fields: made once for each, and shared by all geoms that have it.
+
+#include <memory>
+
+#include "api/shape.h"
+#include "convex_hull.h"
+#include "ode_numbers.h"
+
+namespace spark::ode {
+
+/// A triangle mesh, with ODE's tree for search. ODE refers to the numbers of `mesh`.
+struct OdeMesh {
+  std::shared_ptr<const engine::Mesh> mesh;
+  dTriMeshDataID data;
+  explicit OdeMesh(std::shared_ptr<const engine::Mesh> mesh);
+  ~OdeMesh() { dGeomTriMeshDataDestroy(data); }
+  OdeMesh(const OdeMesh&) = delete;
+  OdeMesh& operator=(const OdeMesh&) = delete;
+};
+
+/// A convex hull. ODE refers to its numbers.
+struct OdeHull {
+  ConvexHull hull;
+  dGeomID probe;  ///< in no space: for questions about places other than that of a geom
+  explicit OdeHull(std::shared_ptr<const engine::Mesh> mesh);
+  ~OdeHull();
+  OdeHull(const OdeHull&) = delete;
+  OdeHull& operator=(const OdeHull&) = delete;
+  dGeomID create(dSpaceID space) const;
+};
+
+/// A height field. In ODE its heights are along y, and its rows along -z.
+struct OdeHeights {
+  std::shared_ptr<const engine::HeightField> field;
+  dHeightfieldDataID data;
+  explicit OdeHeights(std::shared_ptr<const engine::HeightField> field);
+  ~OdeHeights() { dGeomHeightfieldDataDestroy(data); }
+  OdeHeights(const OdeHeights&) = delete;
+  OdeHeights& operator=(const OdeHeights&) = delete;
+  /// From ODE's frame to that of the shape.
+  static Mat3 toShape();
+};
+
+/// Those of a world.
+struct MadeShapes {
+  engine::MadeOf<engine::Mesh, OdeMesh> meshes;
+  engine::MadeOf<engine::Mesh, OdeHull> hulls;
+  engine::MadeOf<engine::HeightField, OdeHeights> heights;
+};
+
+/// What ODE's geom of a shape refers to.
+struct SharedShape {
+  std::shared_ptr<OdeMesh> mesh;
+  std::shared_ptr<OdeHull> hull;
+  std::shared_ptr<OdeHeights> heights;
+};
+
+/// Creates ODE's geom of a shape. What it refers to is written to `shared`.
+dGeomID createGeom(const engine::ShapeDescription& shape, dSpaceID space, MadeShapes& made, SharedShape& shared);
+void destroyGeom(dGeomID geom);
+/// Changes the dimensions of ODE's geom, so that it keeps its position in the space's list. Returns false when the geom
+/// must be created again.
+bool reshape(dGeomID geom, const engine::ShapeDescription& from, const engine::ShapeDescription& to);
+/// The frame of ODE's geom in that of the shape.
+Pose frameOf(const engine::ShapeDescription& shape, const SharedShape& shared);
+
+}  // namespace spark::ode
