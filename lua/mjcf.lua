@@ -1,7 +1,8 @@
--- A model in MJCF, MuJoCo's model format, on the ground: by default a standing Booster T1.
+-- A model in MJCF, URDF or Webots' language on the ground: by default a standing Booster T1.
 --
 --     sparkhost --config mjcf.lua
 --     sparkhost --config mjcf.lua --set model=rsg/robots/k1.xml
+--     sparkhost --config mjcf.lua --set model=rsg/robots/rover.wbt --set stiffness=0
 --     sparkhost --config mjcf.lua --scene-path ~/models --set model=humanoid.xml --set stiffness=0
 include "house.lua"
 include "materials.lua"

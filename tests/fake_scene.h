@@ -46,8 +46,11 @@ class FakeSceneServer : public Node, public ISceneServer {
   void importScene(std::string_view, Node&, const List&) override {}
   void markModified() override { ++modified; }
   std::uint64_t modifiedCount() const override { return modified; }
+  void placeScene(Node&) override {}
   void place() override {}
+  const std::vector<Import>& imports() const override { return imported; }
   std::uint64_t modified = 0;
+  std::vector<Import> imported;
 };
 
 /// The connection of a client. It holds one message in flight and is not idle until the client has read it.

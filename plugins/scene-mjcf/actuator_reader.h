@@ -3,7 +3,7 @@
 /// Reads the actuators of an MJCF model.
 
 #include "compiler.h"
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

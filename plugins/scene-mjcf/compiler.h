@@ -6,7 +6,7 @@
 
 #include "api/math.h"
 #include "api/model.h"
-#include "document.h"
+#include "robot/document.h"
 
 namespace spark::mjcf {
 

@@ -3,7 +3,7 @@
 /// Reads the elements `equality` and `tendon`.
 
 #include "compiler.h"
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

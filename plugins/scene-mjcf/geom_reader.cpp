@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "geom_mass.h"
 #include "mesh_fit.h"
 
 namespace spark::mjcf {
@@ -63,11 +62,11 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
 
 engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
   const Mesh& mesh = meshes_.get(a, unsupported_);
-  engine::Mass mass = shapeMass(mesh.surface, weight, geom);
+  engine::Mass mass = mjcf::meshMass(mesh.surface, weight, geom);
   constexpr double kSame = 1e-6;  // relative
   const Weight byVolume{1, std::nullopt};
-  if (!compiler_.exactMeshInertia() &&
-      shapeMass(mesh.surface, byVolume, geom).mass < (1 - kSame) * shapeMass(mesh.hull, byVolume, geom).mass)
+  if (!compiler_.exactMeshInertia() && mjcf::meshMass(mesh.surface, byVolume, geom).mass <
+                                           (1 - kSame) * mjcf::meshMass(*mesh.collider.mesh, byVolume, geom).mass)
     unsupported_.add(geom,
                      "the mass of a <mesh> that is not convex is exact, as with exactmeshinertia; MuJoCo 2.2.2 "
                      "estimates it");
@@ -106,7 +105,7 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
   }
   if (type != "mesh" && a.has("mesh")) {
     const Weight byVolume{1, std::nullopt};
-    const EquivalentBox box = equivalentBox(shapeMass(meshes_.get(a, unsupported_).surface, byVolume, g.from));
+    const EquivalentBox box = equivalentBox(mjcf::meshMass(meshes_.get(a, unsupported_).surface, byVolume, g.from));
     g.pose = compose(g.pose, box.pose);
     size = a.number("fitscale", 1) * fittedSize(type, box.halfEdges);
   }
@@ -133,7 +132,7 @@ ShapeDescription GeomReader::shape(Attributes& a, const std::string& type, const
   } else if (type == "plane") {
     s.shape = Shape::plane;
   } else {
-    s = meshes_.get(a, unsupported_).hull;
+    s = meshes_.get(a, unsupported_).collider;
   }
   return s;
 }

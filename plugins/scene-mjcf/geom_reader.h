@@ -3,9 +3,9 @@
 /// Reads the geoms of an MJCF model.
 
 #include "compiler.h"
-#include "geom_mass.h"
 #include "meshes.h"
-#include "model.h"
+#include "robot/geom_mass.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

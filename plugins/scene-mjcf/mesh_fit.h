@@ -2,7 +2,7 @@
 /// \file
 /// Primitive shapes that are fitted to meshes.
 
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

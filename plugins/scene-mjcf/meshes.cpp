@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 
-#include "hull.h"
+#include "meshes/hull.h"
 
 namespace spark::mjcf {
 
@@ -68,13 +68,8 @@ const Mesh& Meshes::get(Attributes& a, Unsupported& unsupported) {
 }
 
 /// As the file or the element has it. A mesh without faces has no triangles.
-engine::ShapeDescription Meshes::surfaceOf(const Asset& m) const {
-  if (!m.vertices.empty()) {
-    engine::ShapeDescription s;
-    s.vertices = m.vertices;
-    s.triangles = m.faces;
-    return s;
-  }
+engine::Mesh Meshes::surfaceOf(const Asset& m) const {
+  if (!m.vertices.empty()) return {m.vertices, m.faces};
   if (m.file.empty()) throw m.from.error("expected an attribute 'file' or 'vertex'");
   try {
     return read_(std::filesystem::path(m.folder + m.file).lexically_normal().string());
@@ -86,7 +81,6 @@ engine::ShapeDescription Meshes::surfaceOf(const Asset& m) const {
 void Meshes::load(Asset& m, Unsupported& unsupported) {
   Mesh mesh;
   mesh.surface = surfaceOf(m);
-  mesh.surface.shape = engine::Shape::mesh;
   // In single precision at each stage, as in MuJoCo.
   const auto rounded = [](const Vec3& at) { return Vec3(at.cast<float>().cast<double>()); };
   std::vector<double>& v = mesh.surface.vertices;
@@ -96,14 +90,18 @@ void Meshes::load(Asset& m, Unsupported& unsupported) {
     at = rounded(rounded(m.rotation.transpose() * moved).cwiseProduct(m.scale));
     if (!at.allFinite()) throw m.from.error("expected vertices of finite numbers");
   }
+  engine::Mesh hull;
+  mesh.collider.shape = engine::Shape::convex;
   try {
-    mesh.hull = hullOf(mesh.surface);
+    hull = meshes::hullOf(v);
   } catch (const Error& e) {
     if (mesh.surface.triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
     unsupported.add(m.from, "a flat <mesh> has no convex hull: its triangles collide");
-    mesh.hull = mesh.surface;
+    hull = mesh.surface;
+    mesh.collider.shape = engine::Shape::mesh;
   }
-  if (mesh.surface.triangles.empty()) mesh.surface = mesh.hull;
+  if (mesh.surface.triangles.empty()) mesh.surface = hull;
+  mesh.collider.mesh = std::make_shared<const engine::Mesh>(std::move(hull));
   m.loaded = std::move(mesh);
 }
 

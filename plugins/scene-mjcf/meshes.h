@@ -5,13 +5,14 @@
 #include <map>
 
 #include "compiler.h"
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 
-/// A mesh: its surface, from which its mass follows, and its convex hull, which collides.
+/// A mesh: its surface, from which its mass follows, and its convex hull, which collides; a flat mesh collides itself.
 struct Mesh {
-  engine::ShapeDescription surface, hull;
+  engine::Mesh surface;
+  engine::ShapeDescription collider;
 };
 
 /// The meshes of the element `asset`. A mesh is loaded when the first geom needs it, and only once.
@@ -35,7 +36,7 @@ class Meshes {
     Mat3 rotation = Mat3::Identity();
     std::optional<Mesh> loaded;
   };
-  engine::ShapeDescription surfaceOf(const Asset& asset) const;
+  engine::Mesh surfaceOf(const Asset& asset) const;
   void load(Asset& asset, Unsupported& unsupported);
 
   const ReadMesh& read_;

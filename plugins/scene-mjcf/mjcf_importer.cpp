@@ -1,10 +1,8 @@
 #include "mjcf_importer.h"
 
-#include <algorithm>
-
 #include "api/files.h"
-#include "builder.h"
-#include "mesh_file.h"
+#include "meshes/mesh_file.h"
+#include "robot/builder.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -17,22 +15,7 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
   d.property("imports", &MjcfImporter::imports_).readOnly().doc("Models imported so far.");
 }
 
-bool MjcfImporter::recognises(std::string_view text) const {
-  constexpr std::string_view kMark = "\xef\xbb\xbf";  // of UTF-8
-  if (text.starts_with(kMark)) text.remove_prefix(kMark.size());
-  // Declaration and comments come first.
-  while (true) {
-    text.remove_prefix(std::min(text.find_first_not_of(" \t\r\n"), text.size()));
-    const std::string_view end = text.starts_with("<!--") ? "-->"
-                                 : text.starts_with("<?") ? "?>"
-                                 : text.starts_with("<!") ? ">"
-                                                          : "";
-    if (end.empty()) return text.starts_with("<mujoco");
-    const std::size_t at = text.find(end);
-    if (at == std::string_view::npos) return false;
-    text.remove_prefix(at + end.size());
-  }
-}
+bool MjcfImporter::recognises(std::string_view text) const { return mjcf::firstTag(text) == "mujoco"; }
 
 void MjcfImporter::import(std::string_view file, Node& root, const List& arguments) {
   if (arguments.size() > 1)
@@ -42,7 +25,7 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
   mjcf::Unsupported unsupported;
   mjcf::Document document(std::string(file), [&](const std::string& name) { return files.read(name); });
   const mjcf::Model model = mjcf::readModel(
-      document, [&](const std::string& name) { return mjcf::readMesh(name, files.read(name)); }, unsupported);
+      document, [&](const std::string& name) { return meshes::readMesh(name, files.read(name)); }, unsupported);
   mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, unsupported);
   builder.build(root);
   ++imports_;

@@ -3,7 +3,7 @@
 /// The importer of MJCF, MuJoCo's language of models.
 
 #include "api/scene.h"
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark {
 

@@ -2,7 +2,7 @@
 /// \file
 /// Reads the element `option` of an MJCF model, and its flags.
 
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

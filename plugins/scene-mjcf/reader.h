@@ -7,7 +7,7 @@
 #include "constraint_reader.h"
 #include "geom_reader.h"
 #include "meshes.h"
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

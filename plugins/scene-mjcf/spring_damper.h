@@ -2,7 +2,7 @@
 /// \file
 /// Springs and dampers that are given by a time constant and a damping ratio.
 
-#include "model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf {
 

@@ -1,5 +1,7 @@
 #include "scene_server.h"
 
+#include <algorithm>
+
 #include "api/files.h"
 #include "api/phases.h"
 #include "spark/error.h"
@@ -64,8 +66,11 @@ ISceneImporter& SceneServer::importerFor(const std::string& file) {
       known_.insert_or_assign(file, Known{stamp, importer});
       return *importer;
     }
-  throw Error(
-      fmt::format("none of the {} importers below {} knows the format of '{}'", importers_.size(), path(), file));
+  std::string names;
+  for (const Found<ISceneImporter>& importer : importers_) names += (names.empty() ? "" : ", ") + importer.leaf->name();
+  throw Error(fmt::format(
+      "none of the importers below {} ({}) knows the format of '{}': its beginning says none of their languages",
+      path(), names, file));
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
@@ -84,13 +89,19 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
   } importing(firstImported_, kernel().lastId());
   if (importing.outermost) kept_.clear();
   const std::uint64_t before = kernel().lastId();
+  const auto list = [&] {
+    if (importing.outermost && rootAlive && kernel().lastId() > before)
+      imports_.push_back({name, rootAlive, arguments, before + 1, kernel().lastId()});
+    forgetOldImports();
+  };
   bool keeps = false;
   try {
     ISceneImporter& importer = importerFor(name);
     keeps = importer.keepsTransforms();
     importer.import(name, root, arguments);
   } catch (...) {
-    markModified();  // nodes that were created before the error are kept
+    list();  // nodes that were created before the error are kept
+    markModified();
     throw;
   }
   if (keeps)
@@ -101,11 +112,36 @@ void SceneServer::importScene(std::string_view file, Node& root, const List& arg
                return ids.first <= node.id() && node.id() <= ids.second;
              });
     });
+  list();
   markModified();
+}
+
+/// Robots come and go: imports of which nothing is left are forgotten, at each doubling of the list.
+void SceneServer::forgetOldImports() {
+  if (imports_.size() < forgetAt_) return;
+  std::vector<Leaf*> all;
+  kernel().root().collect(all);
+  std::vector<std::uint64_t> ids;
+  ids.reserve(all.size());
+  for (const Leaf* leaf : all) ids.push_back(leaf->id());
+  std::sort(ids.begin(), ids.end());
+  std::erase_if(imports_, [&](const Import& i) {
+    const auto next = std::lower_bound(ids.begin(), ids.end(), i.first);
+    return !i.root || next == ids.end() || *next > i.last;
+  });
+  forgetAt_ = std::max<std::size_t>(64, 2 * imports_.size());
 }
 
 void SceneServer::place() {
   if (Node* scene = scene_.get()) placement_.place(*scene);
+}
+
+void SceneServer::placeScene(Node& scene) {
+  if (&scene == scene_.get()) return place();
+  std::erase_if(others_, [](const Other& o) { return !o.scene; });
+  auto found = std::find_if(others_.begin(), others_.end(), [&](const Other& o) { return o.scene.get() == &scene; });
+  if (found == others_.end()) found = others_.insert(found, {Ref<Node>(&scene), {}});
+  found->placement.place(scene);
 }
 
 void Placement::collect(Node& node, int parent) {

@@ -51,6 +51,8 @@ class SceneServer : public Node, public ISceneServer {
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
   void place() override;
+  void placeScene(Node& scene) override;
+  const std::vector<Import>& imports() const override { return imports_; }
 
   /// The materials of meshes.
   MeshLibrary& meshes() { return meshes_; }
@@ -63,6 +65,7 @@ class SceneServer : public Node, public ISceneServer {
   };
   /// The first importer that recognises the format of `file`. Throws Error when there is none.
   ISceneImporter& importerFor(const std::string& file);
+  void forgetOldImports();
   void createScene(std::string path);
   void defineMesh(std::string mesh, std::vector<std::string> materials) {
     meshes_.define(std::move(mesh), std::move(materials));
@@ -77,9 +80,17 @@ class SceneServer : public Node, public ISceneServer {
   std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the current import; 0: there is none
   /// First and last ids of the nodes in the current import whose importers keep their transforms.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> kept_;
+  std::vector<Import> imports_;
+  std::size_t forgetAt_ = 64;  ///< number of imports at which forgetOldImports() looks
   Link<Node> scene_;
   Links<ISceneImporter> importers_;
+  /// A scene beside the active one.
+  struct Other {
+    Ref<Node> scene;
+    Placement placement;
+  };
   Placement placement_;
+  std::vector<Other> others_;
   MeshLibrary meshes_;
   std::map<std::string, Known, std::less<>> known_;  ///< by file
 };

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "../../plugins/scene-mjcf/model.h"
+#include "../../plugins/scene-mjcf/robot/model.h"
 
 using namespace spark;
 
@@ -23,7 +23,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       throw Error("no such file");
     });
     const auto tetrahedron = [](const std::string&) {
-      engine::ShapeDescription s{.shape = engine::Shape::mesh};
+      engine::Mesh s;
       s.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
       s.triangles = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
       return s;

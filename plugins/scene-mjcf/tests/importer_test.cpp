@@ -151,7 +151,7 @@ TEST_CASE("a mesh file becomes a mesh collider") {
       "<body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body></worldbody></mujoco>");
   CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(1));
   CHECK(h.position("m/b/body").isApprox(Vec3(0.25, 0.25, 0.25)));
-  CHECK(h.at<ICollider>("m/b/g").shape()->triangles.size() == 12);
+  CHECK(h.at<ICollider>("m/b/g").shape()->mesh->triangles.size() == 12);
 }
 
 TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
@@ -266,7 +266,7 @@ TEST_CASE("mesh files may be MSH files, and OBJ files without faces") {
   };
   const auto check = [&] {
     CHECK(h.at<IRigidBody>("m/b/body").mass() == Approx(1));
-    CHECK(h.at<ICollider>("m/b/g").shape()->triangles.size() == 12);
+    CHECK(h.at<ICollider>("m/b/g").shape()->mesh->triangles.size() == 12);
     h.scene.remove(*h.scene.child("m"));
   };
   h.folder.write("points.obj", "# a tetrahedron\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");

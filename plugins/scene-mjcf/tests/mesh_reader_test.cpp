@@ -13,7 +13,7 @@ TEST_CASE("a flat mesh is refused only if its mass is needed") {
         "<mujoco><asset><mesh name='m' file='m.stl'/></asset><worldbody>" + content + "</worldbody></mujoco>";
     Document document("a.xml", [&](const std::string&) { return text; });
     const auto triangle = [](const std::string&) {
-      engine::ShapeDescription s{.shape = engine::Shape::mesh};
+      engine::Mesh s;
       s.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0};
       s.triangles = {0, 1, 2};
       return s;
@@ -35,21 +35,21 @@ TEST_CASE("a mesh can be written in the model, and collides as its convex hull")
   SECTION("without faces") {
     const Read r(mesh(tetrahedron));
     CHECK(r.body(1).mass.mass == Approx(1));
-    CHECK(r.body(1).geoms[0].shape.triangles.size() == 12);
+    CHECK(r.body(1).geoms[0].shape.mesh->triangles.size() == 12);
   }
   SECTION("vertices inside the hull count for the mass of faces alone") {
     // A tetrahedron with a dent.
     const std::string dented = "vertex='0 0 0 1 0 0 0 1 0 0 0 1 .1 .1 .1' ";
     const Read hull(mesh(dented));
     CHECK(hull.body(1).mass.mass == Approx(1));
-    CHECK(hull.body(1).geoms[0].shape.vertices.size() == 12);
+    CHECK(hull.body(1).geoms[0].shape.mesh->vertices.size() == 12);
     const Read faces(mesh(dented + "face='0 2 1 0 1 3 0 3 2 1 2 4 2 3 4 3 1 4'"));
     CHECK(faces.body(1).mass.mass == Approx(0.3));
-    CHECK(faces.body(1).geoms[0].shape.triangles.size() == 12);
+    CHECK(faces.body(1).geoms[0].shape.mesh->triangles.size() == 12);
   }
   SECTION("a cube has two triangles on each side, which point outwards") {
     const Read r(mesh("vertex='0 0 0 1 0 0 1 1 0 0 1 0 0 0 1 1 0 1 1 1 1 0 1 1 .5 .5 .5'"));
-    const engine::ShapeDescription& s = r.body(1).geoms[0].shape;
+    const engine::Mesh& s = *r.body(1).geoms[0].shape.mesh;
     CHECK(s.vertices.size() == 24);
     REQUIRE(s.triangles.size() == 36);
     double volume = 0;
@@ -113,7 +113,7 @@ TEST_CASE("file names can be stripped of their folders") {
   Document document("a.xml", [&](const std::string&) { return text; });
   const auto read = [&](const std::string& file) {
     opened = file;
-    engine::ShapeDescription s{.shape = engine::Shape::mesh};
+    engine::Mesh s;
     s.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     return s;
   };

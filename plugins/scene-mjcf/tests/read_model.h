@@ -6,7 +6,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
-#include "../model.h"
+#include "robot/model.h"
 
 namespace spark::mjcf::test {
 
@@ -27,7 +27,7 @@ struct Read {
         *document,
         [](const std::string&) {
           // A cube of 1 m.
-          engine::ShapeDescription s{.shape = engine::Shape::mesh};
+          engine::Mesh s;
           for (int i = 0; i < 8; ++i)
             for (int k = 0; k < 3; ++k) s.vertices.push_back((i >> k) & 1);
           s.triangles = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,

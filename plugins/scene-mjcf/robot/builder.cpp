@@ -1,0 +1,97 @@
+#include "builder.h"
+
+#include <fmt/ranges.h>
+
+#include "actuator_builder.h"
+#include "body_builder.h"
+#include "constraint_builder.h"
+#include "construction.h"
+#include "geom_builder.h"
+#include "sensor_builder.h"
+#include "spark/access.h"
+
+namespace spark::mjcf {
+
+namespace {
+
+/// World pose of the transform around a node.
+Pose poseAround(Node& node) {
+  const auto* const above = static_cast<SceneNode&>(node).transform();
+  return above ? toPose(above->worldNow()) : Pose{};
+}
+
+/// The world of the scene that a node is in; nullptr when there is none.
+Leaf* worldAround(Node& node) {
+  for (Node* up = &node; up; up = up->parent())
+    for (const auto& child : up->children())
+      if (child->classObject()->name() == "World") return child.get();
+  return nullptr;
+}
+
+}  // namespace
+
+void Builder::build(Node& root) {
+  Names names(prefix_);
+  Node& top = *root.create("Space", names.in(root, model_.name, "model")).asNode();
+  try {
+    if (!model_.selfCollides) callMethod(top, "disableInnerCollision", List{true});
+    Construction c{model_, unsupported_, top, std::move(names), PlacedBodies(model_, poseAround(top))};
+    if (prefix_.empty()) c.flags = model_.flags;
+    BodyBuilder(c).build();
+    GeomBuilder(c).build();
+    ConstraintBuilder(c).build();
+    ActuatorBuilder(c).build();
+    SensorBuilder(c).build();
+    withoutParts_ = c.withoutParts;
+    if (!model_.options.empty() && !prefix_.empty())
+      unsupported_.add(model_.options.front().from,
+                       "the options of an attached model are ignored: the world has its own");
+    if (prefix_.empty()) compareTimesteps(root);
+    if (const auto left = unsupported_.sentences(); strict_ && !left.empty())
+      throw Error(fmt::format("{}", fmt::join(left, "; ")));
+    if (prefix_.empty()) setOptions(root);
+  } catch (...) {
+    root.remove(top);
+    throw;
+  }
+}
+
+/// A cycle has a whole number of steps, so their length may differ from that of the file.
+void Builder::compareTimesteps(Node& root) {
+  const Leaf* const simulation = root.kernel().root().find("/sys/server/simulation");
+  if (!simulation || !simulation->classObject()->property("step")) return;
+  const double cycle = getProperty(*simulation, "step").toNumber();
+  for (const Option& o : model_.options) {
+    if (std::string_view(o.property) != "timestep") continue;
+    const double wanted = o.value.toNumber(), steps = std::max(1.0, std::round(cycle / wanted));
+    if (cycle > 0 && std::abs(cycle / steps - wanted) > 1e-9 * wanted)
+      unsupported_.add(
+          o.from, fmt::format("the timestep of {} s does not divide the cycle of {} s: {} of {:.6g} s each "
+                              "are used in its place",
+                              wanted, cycle, steps == 1 ? "steps" : fmt::format("{} steps", steps), cycle / steps));
+  }
+}
+
+void Builder::setOptions(Node& root) {
+  Leaf* const world = worldAround(root);
+  if (!world) return;
+  struct Old {
+    Leaf* node;
+    const char* property;
+    Value value;
+  };
+  std::vector<Old> before;
+  for (const Option& o : model_.options) {
+    Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
+    if (!node) continue;
+    try {
+      before.push_back({node, o.property, getProperty(*node, o.property)});
+      setProperty(*node, o.property, o.value);
+    } catch (const Error& e) {
+      for (auto old = before.rbegin(); old != before.rend(); ++old) setProperty(*old->node, old->property, old->value);
+      throw Error(o.from.where() + ": cannot set an option", e);
+    }
+  }
+}
+
+}  // namespace spark::mjcf

@@ -1,0 +1,176 @@
+#include "geom_builder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "api/appearance.h"
+#include "spark/access.h"
+
+namespace spark::mjcf {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+namespace {
+
+List matrix(const Mat3& r) {
+  List out;
+  for (int column = 0; column < 3; ++column) {
+    for (int row = 0; row < 3; ++row) out.emplace_back(r(row, column));
+    out.emplace_back(0.0);
+  }
+  for (const double v : {0.0, 0.0, 0.0, 1.0}) out.emplace_back(v);
+  return out;
+}
+
+bool hasMesh(const ShapeDescription& s) { return s.shape == Shape::mesh || s.shape == Shape::convex; }
+
+/// Sets a collider's shape; `pose`: in its body, or in the world.
+void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
+  switch (s.shape) {
+    case Shape::box:
+      callMethod(collider, "setBoxLengths", toList(s.lengths));
+      break;
+    case Shape::sphere:
+      callMethod(collider, "setRadius", List{s.radius});
+      break;
+    case Shape::capsule:
+    case Shape::cylinder:
+      callMethod(collider, "setParams", List{s.radius, s.length});
+      break;
+    case Shape::plane: {
+      const Vec3 normal = pose.rotation.col(2);
+      callMethod(collider, "setParams", List{normal.x(), normal.y(), normal.z(), normal.dot(pose.position)});
+      return;
+    }
+    default: {
+      setProperty(collider, "vertices", List(s.mesh->vertices.begin(), s.mesh->vertices.end()));
+      if (s.shape == Shape::convex) break;  // its hull is known by its corners
+      List triangles;
+      for (const std::uint32_t t : s.mesh->triangles) triangles.emplace_back(static_cast<std::int64_t>(t));
+      setProperty(collider, "triangles", triangles);
+      break;
+    }
+  }
+  callMethod(collider, "setRotation", matrix(pose.rotation));
+  callMethod(collider, "setLocalPosition", toList(pose.position));
+}
+
+void setContact(Node& collider, const Geom& g) {
+  const ContactNumbers& m = g.contact;
+  if (Leaf* const numbers = m == ContactNumbers() ? nullptr : extensionOf(collider, "MujocoSurface")) {
+    setProperty(*numbers, "friction", toList(m.friction));
+    setProperty(*numbers, "condim", m.condim);
+    setProperty(*numbers, "priority", m.priority);
+    setProperty(*numbers, "solref", toList(m.solref));
+    setProperty(*numbers, "solimp", toList(m.solimp));
+    setProperty(*numbers, "margin", m.margin);
+    setProperty(*numbers, "gap", m.gap);
+  }
+  setProperty(collider, "contactTypes", g.contactTypes);
+  setProperty(collider, "contactAffinities", g.contactAffinities);
+  // For the other engines.
+  Leaf& surface = collider.create("ContactJointHandler", "surface");
+  setProperty(surface, "contactBounceMode", false);
+  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : m.friction[0]);
+  setProperty(surface, "contactPyramid", true);
+}
+
+}  // namespace
+
+void GeomBuilder::build() {
+  for (PlacedBody& b : c_.bodies) makeGeoms(b), makeSites(b);
+  for (const Exclusion& x : c_.model.exclusions) exclude(x);
+  for (const Pair& p : c_.model.pairs) pair(p);
+}
+
+void GeomBuilder::makeGeoms(PlacedBody& p) {
+  // Where a body is drawn by meshes alone, which viewers do not have, its collision shapes are shown.
+  const std::vector<Geom>& geoms = p.body->geoms;
+  const bool drawn =
+      std::any_of(geoms.begin(), geoms.end(), [](const Geom& g) { return g.visible() && !hasMesh(g.shape); });
+  for (const Geom& g : geoms) {
+    try {
+      if (c_.flags.contact && g.isShape && (g.collides() || inPair(g.name))) makeCollider(g, p);
+      if (g.visible() || !drawn) makeVisible(g, p);
+    } catch (const Error& e) {
+      throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
+    }
+  }
+}
+
+void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
+  const char* const kinds[] = {"BoxCollider",      "SphereCollider", "CapsuleCollider",
+                               "CylinderCollider", "PlaneCollider",  "",
+                               "TriMeshCollider",  "ConvexCollider"};
+  const char* const kind = kinds[static_cast<int>(g.shape.shape)];
+  Node& parent = c_.nodeOf(p);
+  Node& collider = *parent.create(kind, c_.names.collider(parent, g.name)).asNode();
+  p.colliders.push_back(&collider);
+  if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
+    throw Error(fmt::format("there are two geoms '{}'", g.name));
+  setShape(collider, g.shape, p.carrier == 0 ? compose(p.world, g.pose) : c_.inNode(p, g.pose));
+  setContact(collider, g);
+  setProperty(collider, "part", p.part);
+}
+
+void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {
+  const ShapeDescription& s = g.shape;
+  const char* const kinds[] = {"Box", "Sphere", "Capsule", "Cylinder"};
+  const auto kind = static_cast<std::size_t>(s.shape);
+  if (kind >= std::size(kinds)) return;
+  Node& parent = c_.nodeOf(p);
+  const std::string name = c_.names.in(parent, g.name.empty() ? "" : g.name + "-shape", "shape");
+  Leaf& shape = c_.transform(parent, name, c_.inNode(p, g.pose)).create(kinds[kind]);
+  if (s.shape == Shape::box)
+    callMethod(shape, "setExtents", toList(s.lengths));
+  else if (s.shape == Shape::sphere)
+    callMethod(shape, "setRadius", List{s.radius});
+  else
+    callMethod(shape, "setParams", List{s.radius, s.length});
+  callMethod(shape, "setMaterial", List{g.color ? materialOf(*g.color) : "matGrey"});
+}
+
+/// A material of that colour: "rgbb22222", which the page in browsers knows too. It is defined where materials are.
+std::string GeomBuilder::materialOf(const std::array<double, 4>& color) {
+  const auto byte = [](double v) { return static_cast<int>(std::lround(255 * v)); };
+  std::string name = fmt::format("rgb{:02x}{:02x}{:02x}", byte(color[0]), byte(color[1]), byte(color[2]));
+  if (Leaf* const materials = c_.top.kernel().root().find(IMaterial::kFolder))
+    callMethod(*materials, "define", List{name, toList(color)});
+  return name;
+}
+
+void GeomBuilder::makeSites(const PlacedBody& p) {
+  for (const Site& s : p.body->sites) {
+    Node& parent = c_.nodeOf(p);
+    Node& made = c_.transform(parent, c_.names.in(parent, s.name, "site"), c_.inNode(p, s.pose));
+    if (!s.name.empty()) c_.sites.emplace(s.name, &made);
+  }
+}
+
+void GeomBuilder::exclude(const Exclusion& x) {
+  const PlacedBody &a = c_.bodies.find(x.body1, x.from), &b = c_.bodies.find(x.body2, x.from);
+  for (Node* first : a.colliders)
+    for (const Node* second : b.colliders)
+      callMethod(*first, "addNotCollideWithColliderName", List{second->name(), true});
+}
+
+void GeomBuilder::pair(const Pair& p) {
+  if (!c_.flags.contact) return;
+  const auto first = c_.colliders.find(p.geom1), second = c_.colliders.find(p.geom2), none = c_.colliders.end();
+  for (const std::string& name : {p.geom1, p.geom2})
+    if (c_.model.unsupportedGeoms.contains(name))
+      return c_.unsupported.add(p.from, fmt::format("a <pair> of the unsupported geom '{}' is not supported", name));
+  if (first == none || second == none)
+    throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));
+  callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
+}
+
+bool GeomBuilder::inPair(const std::string& geom) const {
+  const std::vector<Pair>& pairs = c_.model.pairs;
+  return !geom.empty() &&
+         std::any_of(pairs.begin(), pairs.end(), [&](const Pair& p) { return p.geom1 == geom || p.geom2 == geom; });
+}
+
+}  // namespace spark::mjcf

@@ -1,0 +1,30 @@
+#pragma once
+/// \file
+/// Makes the colliders, shapes and sites of an MJCF model.
+
+#include "construction.h"
+
+namespace spark::mjcf {
+
+/// Makes colliders and visible shapes of geoms, transforms of sites, and lets pairs of colliders collide or not. Bodies
+/// must be there.
+class GeomBuilder {
+ public:
+  explicit GeomBuilder(Construction& construction) : c_(construction) {}
+  /// Throws Error with file:line:column.
+  void build();
+
+ private:
+  void makeGeoms(PlacedBody& b);
+  void makeCollider(const Geom& geom, PlacedBody& b);
+  void makeVisible(const Geom& geom, const PlacedBody& b);
+  std::string materialOf(const std::array<double, 4>& color);
+  void makeSites(const PlacedBody& b);
+  void exclude(const Exclusion& x);
+  void pair(const Pair& p);
+  bool inPair(const std::string& geom) const;
+
+  Construction& c_;
+};
+
+}  // namespace spark::mjcf

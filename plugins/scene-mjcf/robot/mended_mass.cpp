@@ -1,0 +1,44 @@
+#include "mended_mass.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "api/mass.h"
+
+namespace spark::mjcf {
+
+namespace {
+constexpr double kLightMass = 0.01, kLightRadius = 0.01;  // kg, m
+constexpr double kWater = 1000;                           // kg/m^3
+}  // namespace
+
+void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported) {
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (!(moments.x() > 0)) {
+    unsupported.add(from, what + " with moments of inertia that are not above 0 gets those of a sphere of water");
+    mass.inertia = physics::sphereMass(mass.mass, std::cbrt(0.75 * mass.mass / (kWater * M_PI))).inertia;
+  } else if (moments.x() + moments.y() < moments.z() * (1 - 1e-9)) {
+    unsupported.add(from, what + " with moments of inertia that no body can have gets their mean about each axis");
+    mass.inertia = moments.mean() * Mat3::Identity();
+  }
+}
+
+void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported) {
+  std::vector<double> masses(model.bodies.size(), 0.0);  // of what is fixed to a body that moves
+  std::vector<std::size_t> carrier(model.bodies.size(), 0);
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    const Body& b = model.bodies[i];
+    carrier[i] = b.joints.empty() ? carrier[static_cast<std::size_t>(b.parent)] : i;
+    masses[carrier[i]] += b.mass.mass;
+  }
+  for (std::size_t i = 1; i < model.bodies.size(); ++i) {
+    Body& b = model.bodies[i];
+    if (carrier[i] != i || masses[i] > 0) continue;
+    unsupported.add(b.from, fmt::format("{} that moves and has no mass gets {} g", what, 1000 * kLightMass));
+    b.mass = physics::sphereMass(kLightMass, kLightRadius);
+  }
+}
+
+}  // namespace spark::mjcf

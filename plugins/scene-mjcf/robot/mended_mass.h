@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// Masses that files of robots often get wrong.
+
+#include <string>
+
+#include "model.h"
+
+namespace spark::mjcf {
+
+/// Moments of inertia that are not above 0 become those of a sphere of water of that mass; those that no body can have
+/// become their mean about each axis. Both are named in `unsupported`. `what`: the element, "an <inertial>".
+/// `mass`: above 0.
+void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported);
+
+/// Bodies that move and have no mass, together with what is fixed to them, get 10 g, which is named in `unsupported`.
+/// `what`: "a <link>".
+void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported);
+
+}  // namespace spark::mjcf

@@ -1,0 +1,92 @@
+#include "agent_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace spark::urdf {
+
+/// How agents move the joints: as the transmissions say, or each joint if there are none.
+void AgentParts::drives() {
+  std::map<std::string, const mjcf::Joint*, std::less<>> movable;
+  for (const mjcf::Body& b : model_.bodies)
+    for (const mjcf::Joint& j : b.joints)
+      if (j.kind == mjcf::JointKind::hinge || j.kind == mjcf::JointKind::slide) movable[j.name] = &j;
+  std::set<std::string, std::less<>> joints, followers;
+  for (const Element& e : childrenOf(root_))
+    if (e.tag() == "joint") joints.insert(nameOf(e));
+  for (const mjcf::Equality& q : model_.equalities) followers.insert(q.first);
+  bool any = false;
+  std::set<std::string, std::less<>> driven;
+  for (const Element& t : childrenOf(root_)) {
+    if (t.tag() != "transmission") continue;
+    any = true;
+    for (const Element& e : childrenOf(t)) {
+      if (e.tag() != "joint") continue;
+      const std::string name = nameOf(e);
+      if (!joints.contains(name)) throw e.error(fmt::format("there is no joint '{}'", name));
+      const auto joint = movable.find(name);
+      if (joint == movable.end() || !driven.insert(name).second) continue;
+      // hardware_interface/EffortJointInterface, PositionJointInterface, VelocityJointInterface
+      const auto interface = childOf(e, "hardwareInterface");
+      const std::string_view kind = interface ? interface->node.text().get() : "";
+      drive(e, *joint->second, kind.find("Effort") != std::string_view::npos);
+    }
+  }
+  if (any) return;
+  for (const mjcf::Body& b : model_.bodies)
+    for (const mjcf::Joint& j : b.joints)
+      if (movable.contains(j.name) && !followers.contains(j.name)) drive(j.from, j, false);
+}
+
+void AgentParts::drive(const Element& from, const mjcf::Joint& joint, bool byForceAlone) {
+  mjcf::Actuator x;
+  x.from = from;
+  x.joint = joint.name;
+  const auto add = [&](const char* ending, std::array<double, 3> gain, std::array<double, 2> range) {
+    x.name = joint.name + ending;
+    x.gain = gain;
+    x.controlRange = range;
+    model_.actuators.push_back(x);
+  };
+  const std::array<double, 2> force{-joint.maxForce, joint.maxForce}, all{-HUGE_VAL, HUGE_VAL};
+  if (byForceAlone) return add("", {1, 0, 0}, force);
+  // Targets with gains that the agent chooses: limp until then.
+  add("_pos", {0, 0, 0}, joint.limited ? joint.range : all);
+  add("_vel", {0, 0, 0}, all);
+  add("_tau", {1, 0, 0}, force);
+}
+
+void AgentParts::sensors() {
+  for (const mjcf::Body& b : model_.bodies)
+    for (const mjcf::Joint& j : b.joints)
+      if (j.kind == mjcf::JointKind::hinge || j.kind == mjcf::JointKind::slide)
+        model_.sensors.push_back({j.from, "jointpos", j.name, j.name, "joint", ""});
+}
+
+/// `<gazebo reference="LINK"><sensor type="imu"/></gazebo>` is where robots have one.
+void AgentParts::imus() {
+  for (const Element& g : childrenOf(root_)) {
+    if (g.tag() != "gazebo") continue;
+    const std::string_view link = g.node.attribute("reference").value();
+    const auto body = std::find_if(model_.bodies.begin() + 1, model_.bodies.end(),
+                                   [&](const mjcf::Body& b) { return b.name == link; });
+    if (body == model_.bodies.end()) continue;
+    for (const Element& e : childrenOf(g)) {
+      if (e.tag() != "sensor") continue;
+      const std::string type = e.node.attribute("type").value(), name = nameOf(e);
+      if (type != "imu") {
+        unsupported_.add(e, fmt::format("a sensor of type '{}' is not supported", type));
+        continue;
+      }
+      const std::string site = name + "_site";
+      body->sites.push_back({site, {}});
+      model_.sensors.push_back({e, "gyro", name + "_gyro", site, "site", ""});
+      model_.sensors.push_back({e, "accelerometer", name + "_acc", site, "site", ""});
+    }
+  }
+}
+
+}  // namespace spark::urdf

@@ -1,0 +1,33 @@
+#pragma once
+/// \file
+/// What agents get of a robot: drives and sensors.
+
+#include "elements.h"
+#include "robot/model.h"
+
+namespace spark::urdf {
+
+/// Adds actuators and sensors to a model with all its bodies and joints, as transmissions and `gazebo` elements say.
+class AgentParts {
+ public:
+  /// `root`: the element `robot`. All must outlive this.
+  AgentParts(const Element& root, mjcf::Model& model, Unsupported& unsupported)
+      : root_(root), model_(model), unsupported_(unsupported) {}
+  /// Throws Error with file:line:column.
+  void add() {
+    drives();
+    sensors();
+    imus();
+  }
+
+ private:
+  void drives();
+  void drive(const Element& from, const mjcf::Joint& joint, bool byForceAlone);
+  void sensors();
+  void imus();
+  const Element root_;
+  mjcf::Model& model_;
+  Unsupported& unsupported_;
+};
+
+}  // namespace spark::urdf

@@ -1,0 +1,20 @@
+#pragma once
+/// \file
+/// The node types of Webots itself.
+
+#include <string_view>
+
+namespace spark::webots {
+
+/// True for a type that needs no PROTO.
+bool isBaseNode(std::string_view type);
+/// True for Solid, and for what is one: robots and devices.
+bool isSolid(std::string_view type);
+/// True for what only places or gathers other nodes: Group, Pose, Transform.
+bool isGroup(std::string_view type);
+/// True for what connects solids: HingeJoint, Hinge2Joint, SliderJoint, BallJoint.
+bool isJoint(std::string_view type);
+/// True for what viewers alone need: Viewpoint, Background.
+bool isScenery(std::string_view type);
+
+}  // namespace spark::webots

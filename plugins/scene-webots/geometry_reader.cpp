@@ -1,0 +1,198 @@
+#include "geometry_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base_nodes.h"
+#include "meshes/hull.h"
+#include "robot/geom_mass.h"
+
+namespace spark::webots {
+
+using engine::Shape;
+using engine::ShapeDescription;
+
+namespace {
+
+constexpr int kCollisionGroup = 3;  // not shown where a body has shapes that are seen
+
+/// Geometries that are not read.
+bool isOtherGeometry(std::string_view type) {
+  static constexpr std::string_view kTypes[] = {"Cone", "ElevationGrid", "Extrusion", "IndexedLineSet", "PointSet"};
+  return std::find(std::begin(kTypes), std::end(kTypes), type) != std::end(kTypes);
+}
+
+Error needsUniform(const Node& node) {
+  return node.element().error(fmt::format("expected one scale in all directions for a {}, found several", node.type));
+}
+
+}  // namespace
+
+void GeometryReader::shape(const Node& node, const Frame& frame, mjcf::Body& body) {
+  Fields f(node, r_.unsupported);
+  f.ignore({"castShadows", "isPickable", "name"});
+  mjcf::Geom g;
+  g.from = node.element();
+  g.pose = frame.pose;
+  g.contactTypes = g.contactAffinities = 0;
+  if (const Node* const appearance = f.child("appearance")) g.color = colorOf(*appearance);
+  const Node* const geometry = f.child("geometry");
+  f.finish();
+  if (!geometry) return;
+  auto shape = this->geometry(*geometry, frame, false);
+  if (!shape) return;
+  g.shape = std::move(*shape);
+  body.geoms.push_back(std::move(g));
+}
+
+void GeometryReader::bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body) {
+  r_.visit(node);
+  if (node.type != "Shape" && !isGroup(node.type)) return addBounds(node, frame, density, body);
+  Fields f(node, r_.unsupported);
+  if (node.type == "Shape") {
+    if (const Node* const geometry = f.child("geometry")) addBounds(*geometry, frame, density, body);
+    return;
+  }
+  const Frame inside = frameIn(frame, f);
+  for (const NodePtr& child : f.children("children")) bounds(*child, inside, density, body);
+}
+
+void GeometryReader::addBounds(const Node& node, const Frame& frame, double density, mjcf::Body& body) {
+  auto shape = geometry(node, frame, true);
+  if (!shape) return;
+  mjcf::Geom g;
+  g.from = node.element();
+  g.pose = frame.pose;
+  g.group = kCollisionGroup;
+  if (shape->shape != Shape::plane)
+    g.mass = mjcf::moved(mjcf::shapeMass(*shape, {.density = density, .mass = {}}, g.from), frame.pose);
+  g.shape = std::move(*shape);
+  body.geoms.push_back(std::move(g));
+}
+
+/// nullopt for what is not supported, which is named.
+std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const Frame& frame, bool collides) {
+  r_.visit(node);
+  Fields f(node, r_.unsupported);
+  f.ignore({"subdivision", "ico", "bottom", "top", "side", "ccw", "name", "materialIndex", "solid", "convex",
+            "creaseAngle", "normal", "normalIndex", "normalPerVertex", "texCoord", "texCoordIndex", "color",
+            "colorIndex", "colorPerVertex"});
+  ShapeDescription s;
+  if (node.type == "Box") {
+    s.lengths = f.vector("size", Vec3(2, 2, 2)).cwiseProduct(frame.scale);
+    if (!(s.lengths.minCoeff() > 0)) throw f.error("size", "expected three lengths above 0 for 'size' of Box");
+  } else if (node.type == "Sphere" || node.type == "Cylinder" || node.type == "Capsule") {
+    s.shape = node.type == "Sphere" ? Shape::sphere : node.type == "Cylinder" ? Shape::cylinder : Shape::capsule;
+    const bool round = s.shape == Shape::cylinder ? frame.scale.x() == frame.scale.y() : frame.isUniform();
+    if (!round) throw needsUniform(node);
+    s.radius = f.number("radius", 1) * frame.scale.x();
+    s.length = s.shape == Shape::sphere ? 0 : f.number("height", 2) * frame.scale.z();
+    if (!(s.radius > 0))
+      throw f.error("radius", fmt::format("expected a length above 0 for 'radius' of {}", node.type));
+    if (s.shape != Shape::sphere && !(s.length > 0))
+      throw f.error("height", fmt::format("expected a length above 0 for 'height' of {}", node.type));
+  } else if (node.type == "Plane") {
+    if (!collides) return std::nullopt;  // viewers draw no planes
+    f.ignore({"size"});
+    s.shape = Shape::plane;
+  } else if (node.type == "Mesh" || node.type == "IndexedFaceSet") {
+    s.shape = Shape::mesh;
+    // What viewers would not draw need not be read.
+    if (!collides) return s;
+    s = hull(node, frame.scale);
+    count(node, *s.mesh);
+    return s;
+  } else if (isOtherGeometry(node.type)) {
+    r_.ignore(node, fmt::format("the geometry {} is not supported", node.type));
+    return std::nullopt;
+  } else {
+    throw r_.missing(node);
+  }
+  f.finish();
+  return s;
+}
+
+/// Each use of a mesh has a copy.
+void GeometryReader::count(const Node& node, const engine::Mesh& mesh) {
+  numbers_ += mesh.vertices.size() + mesh.triangles.size();
+  if (numbers_ > mjcf::kMaxMeshNumbers)
+    throw node.element().error(fmt::format("the meshes of all nodes have more than {} numbers", mjcf::kMaxMeshNumbers));
+}
+
+/// The convex hull of a mesh, scaled.
+ShapeDescription GeometryReader::hull(const Node& node, const Vec3& scale) {
+  engine::Mesh mesh = hullOf(node);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    mesh.vertices[i] *= scale[static_cast<int>(i % 3)];
+    if (!std::isfinite(mesh.vertices[i])) throw node.element().error("expected vertices of finite numbers");
+  }
+  // A mirrored triangle is seen from its other side.
+  if (scale.prod() < 0)
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t], mesh.triangles[t + 1]);
+  ShapeDescription s{.shape = Shape::convex};
+  s.mesh = std::make_shared<const engine::Mesh>(std::move(mesh));
+  return s;
+}
+
+const engine::Mesh& GeometryReader::hullOf(const Node& node) {
+  if (const auto known = hulls_.find(&node); known != hulls_.end()) return known->second;
+  Fields f(node, r_.unsupported);
+  engine::Mesh mesh = node.type == "Mesh" ? meshFile(f) : faces(f);
+  count(node, mesh);
+  for (const double v : mesh.vertices)
+    if (!std::isfinite(v)) throw node.element().error("expected vertices of finite numbers");
+  try {
+    return hulls_.emplace(&node, meshes::hullOf(std::move(mesh.vertices))).first->second;
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: the {} has no convex hull", node.element().where(), node.type), error);
+  }
+}
+
+engine::Mesh GeometryReader::meshFile(Fields& f) {
+  const std::vector<std::string>* const urls = f.texts("url");
+  if (!urls) throw f.error("url", "expected the name of a file for 'url' of Mesh");
+  try {
+    return readMesh_(f.node().file->name, urls->front());
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: cannot read the mesh '{}'", f.element().where(), urls->front()), error);
+  }
+}
+
+/// The hull needs no faces: they are not read.
+engine::Mesh GeometryReader::faces(Fields& f) {
+  const Node* const coordinate = f.child("coord");
+  if (!coordinate) throw f.error("coord", "expected a node Coordinate for 'coord' of IndexedFaceSet");
+  Fields points(*coordinate, r_.unsupported);
+  const std::vector<double>* const numbers = points.numbers("point");
+  if (!numbers || numbers->size() % 3 != 0)
+    throw points.error("point",
+                       fmt::format("expected points of 3 numbers each for 'point' of Coordinate, found {} numbers",
+                                   numbers ? numbers->size() : 0));
+  return {*numbers, {}};
+}
+
+std::optional<std::array<double, 4>> GeometryReader::colorOf(const Node& appearance) {
+  Fields f(appearance, r_.unsupported);
+  const Node* material = &appearance;
+  const char* name = "baseColor";
+  if (appearance.type == "Appearance") {
+    material = f.child("material");
+    name = "diffuseColor";
+    if (!material) return std::nullopt;
+  } else if (appearance.type != "PBRAppearance") {
+    if (isBaseNode(appearance.type))
+      throw appearance.element().error("expected an appearance, found " + appearance.type);
+    r_.ignore(appearance,
+              fmt::format("the appearance {} is a PROTO that is not there; what has it is grey", appearance.type));
+    return std::nullopt;
+  }
+  Fields of(*material, r_.unsupported);
+  const Vec3 rgb = of.vector(name, name == std::string_view("baseColor") ? Vec3::Ones() : Vec3(0.8, 0.8, 0.8));
+  const double opacity = 1 - std::clamp(of.number("transparency", 0), 0.0, 1.0);
+  return std::array{std::clamp(rgb.x(), 0.0, 1.0), std::clamp(rgb.y(), 0.0, 1.0), std::clamp(rgb.z(), 0.0, 1.0),
+                    opacity};
+}
+
+}  // namespace spark::webots

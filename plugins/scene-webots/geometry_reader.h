@@ -1,0 +1,41 @@
+#pragma once
+/// \file
+/// Reads shapes: what collides and what is seen.
+
+#include <map>
+
+#include "reading.h"
+
+namespace spark::webots {
+
+/// A mesh by the name that the file `of` gives it. Throws Error.
+using ReadMesh = std::function<engine::Mesh(const std::string& of, const std::string& url)>;
+
+/// Reads Shape nodes and bounding objects of one file. The mesh of a node is read once.
+class GeometryReader {
+ public:
+  /// Both must outlive the reader.
+  GeometryReader(Reading& reading, const ReadMesh& readMesh) : r_(reading), readMesh_(readMesh) {}
+  /// A Shape, which is only seen. Throws Error.
+  void shape(const Node& node, const Frame& frame, mjcf::Body& body);
+  /// A bounding object: a geometry, a Shape, or a Group or Pose of them. `density`: of its parts [kg/m^3]; their masses
+  /// are those of the geoms. Throws Error.
+  void bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body);
+
+ private:
+  std::optional<engine::ShapeDescription> geometry(const Node& node, const Frame& frame, bool collides);
+  void count(const Node& node, const engine::Mesh& mesh);
+  engine::ShapeDescription hull(const Node& node, const Vec3& scale);
+  const engine::Mesh& hullOf(const Node& node);
+  engine::Mesh meshFile(Fields& fields);
+  engine::Mesh faces(Fields& fields);
+  std::optional<std::array<double, 4>> colorOf(const Node& appearance);
+  void addBounds(const Node& node, const Frame& frame, double density, mjcf::Body& body);
+
+  Reading& r_;
+  const ReadMesh& readMesh_;
+  std::map<const Node*, engine::Mesh> hulls_;  ///< without their scales
+  std::size_t numbers_ = 0;                    ///< of all meshes
+};
+
+}  // namespace spark::webots

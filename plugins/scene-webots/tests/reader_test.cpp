@@ -1,0 +1,252 @@
+#include <Eigen/Geometry>
+
+#include "read_world.h"
+#include "robots.h"
+
+using namespace spark;
+using namespace spark::webots::test;
+using namespace spark::webots;
+using Catch::Contains;
+using mjcf::JointKind;
+
+TEST_CASE("A solid with a box hangs on a hinge") {
+  const Read r(world(R"(Solid { children [ HingeJoint {
+    jointParameters HingeJointParameters { axis 0 1 0 anchor 0 0 1 }
+    endPoint Solid { translation 0 0 0.5 rotation 0 0 1 1.5707963267948966 name "bob"
+      boundingObject Box { size 0.1 0.2 0.3 } physics Physics { density 1000 } } } ] })"));
+  CHECK(r.messages() == "");
+  REQUIRE(r.world.models.size() == 1);
+  const mjcf::Body& bob = r.body("bob");
+  CHECK(bob.mass.mass == Approx(6));
+  CHECK(bob.mass.inertia(0, 0) == Approx(6.0 / 12 * (0.2 * 0.2 + 0.3 * 0.3)));
+  REQUIRE(bob.joints.size() == 1);
+  CHECK(bob.joints[0].kind == JointKind::hinge);
+  CHECK(bob.joints[0].axis.isApprox(Vec3(1, 0, 0)));  // in the frame of the solid
+  CHECK(bob.joints[0].position.isApprox(Vec3(0, 0, 0.5)));
+  CHECK_FALSE(bob.joints[0].limited);
+  CHECK(r.body("solid").joints.empty());
+}
+
+TEST_CASE("A car has its wheels from a PROTO, and the world a floor, walls, gravity and a lamp") {
+  const Read r(kCar);
+  CHECK(r.messages() == "");
+  const mjcf::Model& car = r.model("car");
+  CHECK_FALSE(car.selfCollides);
+  REQUIRE(car.bodies.size() == 6);
+  CHECK(r.body("car").joints.at(0).kind == JointKind::free);
+  CHECK(r.body("car").mass.mass == 2);
+  CHECK(r.body("car").pose.position == Vec3(0, 0, 0.05));
+  const mjcf::Body& wheel = r.body("left wheel");
+  CHECK(wheel.mass.mass == 0.1);
+  CHECK(wheel.mass.inertia(2, 2) == Approx(0.5 * 0.1 * 0.05 * 0.05));
+  CHECK(wheel.joints.at(0).name == "left motor");
+  CHECK(wheel.joints.at(0).axis.isApprox(Vec3(0, 0, -1)));
+  CHECK(wheel.joints.at(0).position.norm() < 1e-12);
+  CHECK(wheel.joints.at(0).maxForce == 0.5);
+  REQUIRE(wheel.geoms.size() == 2);
+  CHECK(wheel.geoms[1].color == std::array{0.2, 0.2, 0.2, 1.0});
+  CHECK(r.body("right wheel").geoms[1].color == std::array{1.0, 1.0, 1.0, 1.0});
+  REQUIRE(car.actuators.size() == 6);
+  CHECK(car.actuators[1].name == "left motor_vel");
+  CHECK(car.actuators[1].controlRange == std::array{-6.28, 6.28});
+  std::vector<std::string> sensors;
+  for (const mjcf::Sensor& s : car.sensors) sensors.push_back(s.name);
+  CHECK(sensors == std::vector<std::string>{"left sensor", "right sensor", "ds0", "gps"});
+  // A device looks along x, a perceptor along y.
+  const mjcf::Site& site = r.body("ds0").sites.at(0);
+  CHECK((site.pose.rotation * Vec3::UnitY()).isApprox(Vec3::UnitX()));
+  CHECK(r.model("scenery").bodies[0].geoms.size() == 5);
+  const auto& options = r.world.models.back().options;
+  REQUIRE(options.size() == 1);
+  CHECK(options[0].value == spark::Value(List{0.0, 0.0, -9.8}));
+  CHECK(r.world.basicTimeStep == 16);
+  REQUIRE(r.world.lights.size() == 1);
+  CHECK(r.world.lights[0].name == "LAMP");
+  CHECK(r.world.lights[0].diffuse == std::array{0.5, 0.5, 0.25});
+}
+
+TEST_CASE("A PROTO file is a robot with the defaults of its fields") {
+  const Read r(kHumanoid);
+  CHECK(r.messages() == "");
+  const mjcf::Model& walker = r.model("walker");
+  CHECK(walker.selfCollides);
+  CHECK(r.body("walker").mass.mass == Approx(500 * 0.1 * 0.15 * 0.2));
+  const mjcf::Joint& hip = r.body("LThigh").joints.at(0);
+  CHECK(hip.reference == 0.25);
+  CHECK(hip.range == std::array{-1.75, 0.25});  // its coordinate is 0 in the pose of the file
+  CHECK(hip.maxForce == 12);
+  CHECK(hip.damping == 0.1);
+  const mjcf::Joint& knee = r.body("LShin").joints.at(0);
+  CHECK(knee.range == std::array{-2.2, 0.1});
+  CHECK(knee.stiffness == 2);
+  CHECK(knee.springPosition == 0);
+  CHECK(knee.dryFriction == 0.3);
+  CHECK(r.body("LThigh").mass.inertia(0, 2) == 0.0001);
+  CHECK(r.body("LThigh").mass.center == Vec3(0.01, 0, -0.1));
+  CHECK(walker.actuators[0].controlRange == std::array{-1.2, 0.4});
+  CHECK(walker.actuators[3].controlRange == std::array{-2.2, 0.1});
+  std::vector<std::string> kinds;
+  for (const mjcf::Sensor& s : walker.sensors) kinds.push_back(s.perceptor ? s.perceptor : s.kind);
+  CHECK(kinds ==
+        std::vector<std::string>{"accelerometer", "gyro", "framequat", "jointpos", "jointpos", "TouchPerceptor"});
+  CHECK(walker.sensors[2].name == "inertial unit");
+}
+
+TEST_CASE("A world gives a PROTO of another file its fields") {
+  const std::string text = world(R"(EXTERNPROTO "protos/Walker.proto"
+    Walker { translation 1 2 3 name "w" kneeStop -1 headSlot [ Solid { name "head" } Solid { name "head" } ] })");
+  const Read r(text, Base::byFile, {{"protos/Walker.proto", kHumanoid}});
+  CHECK(r.messages() == "");
+  CHECK(r.body("w").pose.position == Vec3(1, 2, 3));
+  CHECK(r.body("LShin").joints.at(0).range[0] == -1);
+  CHECK(r.body("head").parent == r.body("head~2").parent);
+  const Read web(
+      world(R"(EXTERNPROTO "https://raw.githubusercontent.com/a/b/R2023b/projects/robots/w/protos/Walker.proto"
+    Walker { speed 3 })"),
+      Base::byFile, {{"projects/robots/w/protos/Walker.proto", kHumanoid}});
+  CHECK_THAT(web.messages(), Contains("a.wbt:3:5: the PROTO 'Walker' has no field 'speed', which is ignored"));
+}
+
+TEST_CASE("An arm without a Physics stands; its meshes collide as their hulls") {
+  const Read r(kArm);
+  CHECK(r.messages() == "");
+  CHECK(r.body("arm").joints.empty());
+  const mjcf::Body& upper = r.body("upper");
+  CHECK(upper.mass.mass == 3.5);
+  CHECK(upper.mass.center.isApprox(Vec3(0.5, 0.5, 0.5)));
+  CHECK(upper.geoms.at(0).shape.mesh->triangles.size() == 36);
+  const mjcf::Body& tool = r.body("tool");
+  CHECK(tool.mass.mass == Approx(1000 * 0.001 / 6));
+  CHECK(tool.joints.at(0).kind == JointKind::slide);
+  CHECK(tool.joints.at(0).axis == Vec3(1, 0, 0));
+  CHECK(tool.joints.at(0).range == std::array{0.0, 0.2});
+  const Read free(kArm, Base::free);
+  CHECK(free.body("arm").joints.at(0).kind == JointKind::free);
+  CHECK_THAT(free.messages(), Contains("a solid that moves and has no mass gets 10 g"));
+  const Read fixed(kCar, Base::fixed);
+  CHECK(fixed.body("car").joints.empty());
+}
+
+TEST_CASE("A joint of two axes is two hinges; the first one turns the second") {
+  const Read r(kBuggy);
+  CHECK(r.messages() == "");
+  const mjcf::Body& wheel = r.body("wheel");
+  REQUIRE(wheel.joints.size() == 2);
+  CHECK(wheel.joints[0].name == "steer");
+  CHECK(wheel.joints[1].name == "roll");
+  CHECK(wheel.joints[0].axis.isApprox(Vec3::UnitZ()));
+  CHECK(wheel.joints[1].axis.isApprox(Vec3::UnitY()));  // it turns with the wheel
+  CHECK(wheel.joints[0].range[0] == Approx(-0.9));
+  CHECK(r.body("trailer").joints.at(0).kind == JointKind::ball);
+  CHECK(r.body("trailer").joints.at(0).position == Vec3(0.4, 0, 0));
+}
+
+TEST_CASE("A scale makes solids, joints and shapes larger") {
+  const Read r(world(R"(Transform { scale 2 2 2 children [ Solid { translation 1 0 0 children [ HingeJoint {
+    jointParameters HingeJointParameters { anchor 1 0 0 }
+    endPoint Solid { translation 2 0 0 name "b" boundingObject Sphere { radius 1 } physics Physics { mass 1 } } } ] } ] })"));
+  CHECK(r.body("solid").pose.position == Vec3(2, 0, 0));
+  CHECK(r.body("b").pose.position == Vec3(4, 0, 0));
+  CHECK(r.body("b").joints[0].position == Vec3(-2, 0, 0));
+  CHECK(r.body("b").geoms[0].shape.radius == 2);
+  CHECK_THAT(failure(world("Transform { scale 1 2 1 children Solid { } }")),
+             Contains("expected one scale in all directions"));
+  CHECK_THAT(failure(world("Transform { scale 0 1 1 }")),
+             Contains("a.wbt:2:13: expected three numbers above 0 for 'scale'"));
+  CHECK_THAT(failure(world("Solid { boundingObject Transform { scale 1 1 2 children Sphere { } } }")),
+             Contains("expected one scale in all directions for a Sphere"));
+}
+
+TEST_CASE("What is not supported is named with its place") {
+  const Read r(world(R"(WorldInfo { contactProperties [ ContactProperties { } ] colour 1 }
+Robot { children [
+  LED { } LED { }
+  Lidar { maxRange 5 }
+  HingeJoint { device Brake { } endPoint Solid { boundingObject Plane { } physics Physics { mass 1 damping Damping { } } } }
+  HingeJoint { endPoint SolidReference { solidName "x" } }
+  HingeJoint { }
+  TouchSensor { type "force" }
+  Shape { appearance Parquetry { } geometry Cone { } }
+] })"));
+  const std::string m = r.messages();
+  for (const char* text :
+       {"a.wbt:2:1: contactProperties are not supported", "the field 'colour' of WorldInfo is not supported",
+        "a.wbt:4:3: the device LED is not supported: only its body and its shapes are read (and 1 more)",
+        "a Lidar has one layer", "a Brake in a joint is not supported", "the damping of a Physics is not supported",
+        "a Plane that moves is not supported", "the loop is open", "a HingeJoint without an endPoint is ignored",
+        "a TouchSensor of type 'force' is not supported", "the appearance Parquetry is a PROTO that is not there",
+        "the geometry Cone is not supported",
+        "a Physics with a mass and no volume has the inertia of a sphere of water"})
+    CHECK_THAT(m, Contains(text));
+}
+
+TEST_CASE("Errors in the meaning of a file say where they are and what was expected") {
+  const auto fails = [](const std::string& nodes, const std::string& text) {
+    INFO(nodes);
+    CHECK_THAT(failure(world(nodes)), Contains(text));
+  };
+  fails("Solid { translation 1 2 }", "a.wbt:2:9: expected 3 numbers for 'translation' of Solid, found 2 numbers");
+  fails("Solid { rotation 0 0 0 1 }", "expected an axis that is not 0");
+  fails("Solid { children 3 }", "expected nodes for 'children' of Solid, found one number");
+  fails("Solid { name 3 }", "expected a text in quotes for 'name' of Solid");
+  fails("Solid { translation 1e300 0 0 }", "expected lengths of at most 1e+09 m");
+  fails("Solid { boundingObject Box { size 1 0 1 } }", "expected three lengths above 0");
+  fails("Solid { boundingObject Sphere { radius -1 } }", "expected a length above 0 for 'radius' of Sphere");
+  fails("Solid { boundingObject Physics { } }", "a.wbt:2:24: a node Physics cannot be here");
+  fails("Solid { physics Box { } }", "a.wbt:2:17: a node Box cannot be here");
+  fails("Solid { physics Physics { mass -3 } }", "expected a mass of 0 or more, or -1, found -3");
+  fails("Solid { physics Physics { inertiaMatrix [ 1 1 1 ] mass 1 } }",
+        "expected two vectors for 'inertiaMatrix', found 3");
+  fails("Solid { physics Physics { inertiaMatrix [ 1 1 1 0 0 0 ] } }", "expected a 'mass' beside 'inertiaMatrix'");
+  fails("Solid { boundingObject Mesh { url \"missing.stl\" } }", "a.wbt:2:24: cannot read the mesh 'missing.stl'");
+  fails("Solid { boundingObject IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 ] } } }",
+        "expected points of 3 numbers");
+  fails("Solid { boundingObject IndexedFaceSet { coord Coordinate { point [ 0 0 0 1 1 1 2 2 2 ] } } }",
+        "has no convex hull");
+  fails("Robot { children HingeJoint { device LinearMotor { } endPoint Solid { } } }",
+        "expected a RotationalMotor in this joint");
+  fails(
+      "Robot { children HingeJoint { jointParameters HingeJointParameters { minStop 1 maxStop -1 } endPoint Solid { } "
+      "} }",
+      "expected 'minStop' not above 'maxStop', found 1 and -1");
+  fails("Robot { children HingeJoint { jointParameters HingeJointParameters { axis 0 0 0 } endPoint Solid { } } }",
+        "expected an axis that is not 0");
+  fails("Robot { children [ Nao { } ] }",
+        "a.wbt:2:20: 'Nao' is no node of Webots, and its PROTO is not there: looked for Nao.proto, protos/Nao.proto");
+  fails("WorldInfo { coordinateSystem \"NUE\" }",
+        "expected \"ENU\", where z is up, for 'coordinateSystem', found \"NUE\"");
+  fails("WorldInfo { gravity -1 }", "expected a number of 0 or more for 'gravity' of WorldInfo, found -1");
+  fails("Robot { children Camera { width 0 } }", "expected a whole number from 1 to 4096 for 'width', found 0");
+}
+
+TEST_CASE("A file that grows by USE, PROTOs or depth ends in an error") {
+  std::string doubling = "DEF A0 Group { }\n";
+  for (int i = 1; i < 40; ++i)
+    doubling += fmt::format("DEF A{} Group {{ children [ USE A{} USE A{} ] }}\n", i, i - 1, i - 1);
+  CHECK_THAT(failure(world(doubling)), Contains("used ones counted each time"));
+  CHECK_THAT(failure(world("Solid { boundingObject Group { children [ " + doubling + " ] } }")),
+             Contains("used ones counted each time"));
+  std::string protos;
+  for (int i = 0; i < 40; ++i)
+    protos += i == 0
+                  ? "PROTO P0 [ ] { Group { } }\n"
+                  : fmt::format("PROTO P{} [ ] {{ Group {{ children [ P{} {{ }} P{} {{ }} ] }} }}\n", i, i - 1, i - 1);
+  CHECK_THAT(failure(world(protos + "P39 { }")), Contains("expected at most 200000 nodes in all PROTOs and files"));
+  CHECK_THAT(failure(world("PROTO P [ ] { Group { children P { } } }\nP { }")),
+             Contains("the PROTO 'P' contains itself"));
+  CHECK_THAT(
+      failure(world("Q { }"), {{"Q.proto", "#VRML_SIM R2023b utf8\nPROTO Q [ field SFNode x R { } ] { Solid { } }"},
+                               {"R.proto", "#VRML_SIM R2023b utf8\nPROTO R [ ] { Q { } }"}}),
+      Contains("contains itself"));
+  std::string deep =
+      "PROTO P [ field MFNode c [ ] ] { Group { children [ Group { children [ Group { children IS c } ] } ] } }\n";
+  for (int i = 0; i < 190; ++i) deep += "P { c ";
+  deep += "Group { }";
+  for (int i = 0; i < 190; ++i) deep += "}";
+  Read r(world(deep));  // deep, and still read
+  std::string tower;
+  for (int i = 0; i < 300; ++i)
+    tower += i == 0 ? "PROTO P0 [ ] { Group { } }\n"
+                    : fmt::format("PROTO P{} [ ] {{ Group {{ children P{} {{ }} }} }}\n", i, i - 1);
+  CHECK_THAT(failure(world(tower + "P299 { }")), Contains("expected nodes nested at most 400 deep"));
+}
