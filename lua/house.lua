@@ -30,14 +30,18 @@ function files()
   return server
 end
 
---- Scene server with the importers of RSG and MJCF, and an empty active scene at /usr/scene.
+--- Scene server with the importers of RSG, MJCF, URDF and Webots, and an empty active scene at /usr/scene.
 function scene()
   plugin "scene"
   plugin "scene-rsg"
   plugin "scene-mjcf"
+  plugin "scene-urdf"
+  plugin "scene-webots"
   local server = new("SceneServer", "/sys/server/scene")
   new("RsgImporter", "/sys/server/scene/rsg")
   new("MjcfImporter", "/sys/server/scene/mjcf")
+  new("UrdfImporter", "/sys/server/scene/urdf")
+  new("WebotsImporter", "/sys/server/scene/webots")
   new("Scene", "/usr/scene")
   return server
 end
@@ -168,10 +172,42 @@ function logs()
   return server
 end
 
+--- The server that lets other hosts mount this one's tree: --set remoteAddress=127.0.0.1:3400, or the path of a Unix
+--- socket. control() calls it. Simulations of a batch have none.
+function remote()
+  local address = option{ name = "remoteAddress", default = "",
+                          doc = "Where other hosts mount this one's tree: host:port or a Unix socket; empty: nowhere." }
+  local token   = option{ name = "remoteToken", default = "",
+                          doc = "What they must know, at least 16 characters; empty: made up and printed." }
+  local expect  = option{ name = "remoteExpect", default = 0, doc = "How many of them the first cycle waits for." }
+  if host.alone or address == "" then return end
+  plugin "remote"
+  local server = get("/sys/server/remote") or new("RemoteServer", "/sys/server/remote")
+  server.expect = expect
+  server:listen(address, token)
+  local at, word = server.address, server:token()
+  -- As the page's link: recordings of the log leave out what follows the mark.
+  if at ~= "" then log.info("other hosts mount this one at " .. at .. (word ~= "" and "#token=" .. word or "")) end
+  return server
+end
+
+--- A part of another host's tree in this one: mount{ "/usr/match", address = "127.0.0.1:3400", token = "..." }. `of`:
+--- the node there whose children appear here, "/" by default; `name`: how this host introduces itself; `waits` false:
+--- the other host does not wait for handlers here.
+function mount(t)
+  plugin "remote"
+  if not get("/sys/server/remote") then new("RemoteServer", "/sys/server/remote") end
+  local node = new("RemoteMount", t[1])
+  node.address, node.of, node.clientName, node.waits = t.address, t.of or "/", t.name or "remote", t.waits ~= false
+  node:connect(t.token or "")
+  return node
+end
+
 --- The socket of sparkctl, which only the host's own user can open. The socket and the page answer requests about
 --- contacts, joint angles and percepts. Simulations of a batch have no socket. It makes a log server, too.
 function control()
   logs()
+  remote()
   if host.alone then return end
   plugin "control"
   plugin "inspect"

@@ -8,10 +8,13 @@
 include "house.lua"
 include "materials.lua"
 include "soccer-house.lua"
+include "shot_clock.lua"
 
 local robots  = option{ name = "team", default = "", doc = "A team of this name plays inside the host; \"A B\": two teams." }
 local players = option{ name = "players", default = 11, doc = "Players of each team inside the host." }
 local offside = option{ name = "offside", default = true, doc = "Offside is judged." }
+local clock   = option{ name = "shotClock", default = "off", choices = { "off", "here", "elsewhere" },
+                        doc = "A side may have the ball for 5 s; judged here, or by referee.lua in another host." }
 local parser  = option{ name = "parser", default = "SexpParser", doc = "Class of the language that agents speak." }
 local encoder = option{ name = "monitor", default = "SexpMonitor", doc = "Class of the language that monitors hear." }
 
@@ -41,6 +44,8 @@ soccerVariables {
 }
 soccerRules()                           -- control aspects below /sys/server/gamecontrol; one more:
 if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") end
+if clock ~= "off" then new("Variables", "/sys/variables/ShotClock") end
+if clock == "here" then shotClock(get("/sys/server/gamecontrol")) end
 soccerMonitor()                         -- monitor items and trainer commands
 get("/sys/server/monitor/GameStateItem").areas = true
 get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")

@@ -1,0 +1,38 @@
+#pragma once
+/// \file
+/// The copy of a subtree of another host: names, classes and shape.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+
+#include "proxy_classes.h"
+#include "spark/kernel.h"
+#include "spark/value.h"
+
+namespace spark::remote {
+
+/// The nodes below a mount, as the other host's TreeFeed tells. Simulation thread.
+class Mirror {
+ public:
+  explicit Mirror(Node& mount) : mount_(mount) {}
+  /// Follows a message of TreeFeed; false if it is none. What cannot be done now, because a node is in use, is done by
+  /// a later call. Throws Error for a message that makes no sense.
+  bool follow(const List& message);
+  /// Does what could not be done before.
+  void catchUp();
+  /// Removes all nodes.
+  void clear();
+
+ private:
+  void change(const List& message);
+  Node& nodeOf(std::uint64_t id) const;
+  Leaf* find(std::uint64_t id) const;
+
+  Node& mount_;
+  ProxyClasses classes_;
+  std::map<std::uint64_t, Ref<Leaf>> nodes_;  ///< by the other host's id
+  std::deque<List> waiting_;
+};
+
+}  // namespace spark::remote

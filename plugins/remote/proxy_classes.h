@@ -1,0 +1,31 @@
+#pragma once
+/// \file
+/// Classes of this host that stand for those of another one.
+
+#include <map>
+#include <string>
+
+#include "spark/kernel.h"
+#include "spark/value.h"
+
+namespace spark::remote {
+
+/// The classes of the nodes of a mount. Each has the name of the other host's class, '@' and the name of the mount, and
+/// the properties and methods that the other host has described.
+class ProxyClasses {
+ public:
+  /// Makes a class, or one that replaces it if the description has changed; nodes that exist keep the old one.
+  /// `message`: a message kClass. Throws Error for one that is none.
+  void define(Kernel& kernel, const std::string& mount, const List& message);
+  /// The class for a class of the other host. Throws Error if that was not described.
+  const std::string& of(const std::string& remote) const;
+
+ private:
+  struct Defined {
+    List message;
+    std::string name;
+  };
+  std::map<std::string, Defined> defined_;  ///< by the other host's name
+};
+
+}  // namespace spark::remote

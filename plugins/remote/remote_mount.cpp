@@ -1,0 +1,223 @@
+#include "remote_mount.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <chrono>
+
+#include "messages.h"
+#include "remote_server.h"
+#include "spark/error.h"
+#include "spark/in_use.h"
+
+namespace spark {
+
+namespace asio = boost::asio;
+using namespace remote;  // NOLINT(google-build-using-namespace)
+
+namespace {
+constexpr std::size_t kMostHostBytes = 64 << 20;  // of a message of the other host
+constexpr const char* kAsked = "another host is asked about it just now";
+constexpr const char* kPasses = "it passes an event of another host just now";
+}  // namespace
+
+void RemoteMount::describe(Description<RemoteMount>& d) {
+  using M = RemoteMount;
+  d.doc("A part of another host's tree: the nodes below it are that host's.");
+  d.implements<IRemoteLink>();
+  d.property("address", &M::address_).ofProcess().doc("Where the other host listens: host:port or a Unix socket.");
+  d.property("of", &M::of_).doc("Path of the node in the other host whose children appear here.");
+  d.property("clientName", &M::clientName_).doc("How this host introduces itself; the other one's log has it.");
+  d.property("waits", &M::waits_).doc("The other host waits until handlers of its events have run here.");
+  d.property("timeout", &M::timeout_)
+      .unit("s")
+      .range(0.001, 3600)
+      .doc("How long an answer may take; then the link counts as lost.");
+  d.property("connected", &M::connected).ofProcess().doc("Whether there is a link.");
+  d.property("lostBecause", &M::lostBecause).ofProcess().doc("Why there is none.");
+  d.method("connect", &M::connect).parameters({"token"}).doc("Connects, and makes the nodes.");
+  d.method("close", &M::close).doc("Disconnects.");
+}
+
+void RemoteMount::onUnlink() { wire_.reset(); }
+
+std::unique_ptr<Wire> RemoteMount::open() {
+  const Address at = Address::read(address_);
+  try {
+    if (!at.path.empty()) {
+      asio::local::stream_protocol::socket socket(io_);
+      socket.connect(asio::local::stream_protocol::endpoint(at.path));
+      return std::make_unique<Wire>(Wire::Socket(std::move(socket)), address_);
+    }
+    asio::ip::tcp::socket socket(io_);
+    asio::connect(socket, asio::ip::tcp::resolver(io_).resolve(at.host, at.port));
+    socket.set_option(asio::ip::tcp::no_delay(true));
+    return std::make_unique<Wire>(Wire::Socket(std::move(socket)), address_);
+  } catch (const boost::system::system_error& e) {
+    throw Error(
+        fmt::format("{}: cannot reach a host at {}; one that says remote{{}} in its config listens", path(), address_),
+        e);
+  }
+}
+
+void RemoteMount::connect(const std::string& token) {
+  if (wire_) throw Error(fmt::format("{} is connected to {} already", path(), address_));
+  kernel().root().require<RemoteServer>();  // it serves this mount
+  mirror_.clear();
+  events_.clear();
+  listeners_.clear();
+  wire_ = open();
+  wire_->setLimit(kMostHostBytes);
+  wire_->send({kHello, kProtocol, token, clientName_, of_});
+  lostBecause_.clear();
+  saidReady_ = false;
+  awaitReply(0);
+  ask(kGet, *this, {"name"});  // the tree comes before this answer
+}
+
+void RemoteMount::close() {
+  if (!wire_) return;
+  wire_.reset();
+  lostBecause_ = "it was closed";
+}
+
+void RemoteMount::lose(std::string why) {
+  wire_.reset();
+  lostBecause_ = std::move(why);
+  tellLost_ = true;
+}
+
+/// The path below the root of what is mounted.
+std::string RemoteMount::pathOf(const Leaf& node) const {
+  if (&node == this) return ".";
+  return node.path().substr(path().size() + 1);
+}
+
+Value RemoteMount::ask(std::string_view request, const Leaf& node, List arguments) {
+  Value answer = askAbout(request, node, std::move(arguments));
+  if (request == kCall) mirror_.catchUp();  // a method may remove its own node, as it may in this host
+  return answer;
+}
+
+Value RemoteMount::askAbout(std::string_view request, const Leaf& node, List arguments) {
+  const InUse asked(node, kAsked);
+  const std::uint64_t number = ++lastRequest_;
+  List message{request, number, pathOf(node)};
+  std::move(arguments.begin(), arguments.end(), std::back_inserter(message));
+  if (!wire_) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+  wire_->send(message);
+  const List reply = awaitReply(number);
+  if (reply[0].toString() == kError)
+    throw Error(reply.size() > 2 ? reply[2].plain() : "the other host gives no reason");
+  return reply.size() > 2 ? reply[2] : Value();
+}
+
+/// Waits for the answer to a request, or to `hello` (0). Changes of the tree are followed meanwhile; events wait.
+List RemoteMount::awaitReply(std::uint64_t number) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + std::chrono::duration<double>(timeout_);
+  List reply;
+  try {
+    for (;;) {
+      if (!wire_->flush()) throw Error("the connection is broken");
+      const bool alive = wire_->receive();
+      while (receiveOne(reply, number))
+        if (!reply.empty()) return reply;
+      if (!alive) throw Error("the connection ended");
+      const std::chrono::duration<double> left = end - Clock::now();
+      if (left.count() <= 0 || !wire_->waitFor(left.count()))
+        throw Error(fmt::format("it did not answer for {} s", timeout_));
+    }
+  } catch (const std::exception& e) {
+    lose(e.what());
+    throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+  }
+}
+
+/// Handles one message that has arrived; false if there is none. The answer to request `number` goes to `reply`.
+bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {
+  const auto bytes = wire_->take();
+  if (!bytes) return false;
+  List message = decode(*bytes);
+  const std::string& kind = message[0].toString();
+  if (mirror_.follow(message)) return true;
+  if (kind == kRefused) throw Error(message.size() > 1 ? message[1].plain() : "it refuses");
+  if (kind == kEvent) {
+    events_.push_back(std::move(message));
+  } else if (kind == kWelcome) {
+    if (number == 0) reply = std::move(message);
+  } else if ((kind == kOk || kind == kError) && message.size() > 1 && message[1].isInteger()) {
+    if (static_cast<std::uint64_t>(message[1].toInteger()) == number) reply = std::move(message);
+  } else {
+    throw Error(fmt::format("it sent a '{}' that is not understood", kind));
+  }
+  return true;
+}
+
+void RemoteMount::listen(Leaf& node, const std::string& channel) {
+  // One subscription for all handlers of a node.
+  for (const auto& [number, listener] : listeners_)
+    if (listener.node.get() == &node && listener.channel->name() == channel) return;
+  const std::uint64_t number = ++lastListener_;
+  const InUse asked(node, kAsked);
+  if (!wire_) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+  const std::uint64_t request = ++lastRequest_;
+  wire_->send({kListen, request, number, pathOf(node), channel, waits_});
+  const List reply = awaitReply(request);
+  if (reply[0].toString() == kError)
+    throw Error(reply.size() > 2 ? reply[2].plain() : "the other host gives no reason");
+  listeners_.emplace(number, Listener{Ref<Leaf>(&node), &kernel().events().channel(channel)});
+}
+
+void RemoteMount::poll() {
+  if (passing_) return;  // a handler of an event runs cycles
+  passing_ = true;
+  const InUse busy(*this, kPasses);
+  if (wire_) {
+    if (!saidReady_) wire_->send({kReady});  // the run loop runs: the config is done
+    saidReady_ = true;
+    try {
+      if (!wire_->flush()) throw Error("the connection is broken");
+      mirror_.catchUp();
+      const bool alive = wire_->receive();
+      List none;
+      while (wire_ && receiveOne(none, ~std::uint64_t{0})) {
+      }
+      if (!alive) throw Error("the connection ended");
+    } catch (const std::exception& e) {
+      lose(e.what());
+    }
+  }
+  for (; !events_.empty() && wire_; events_.pop_front()) pass(List(std::move(events_.front())));
+  if (wire_) wire_->flush();
+  passing_ = false;
+  if (!tellLost_) return;
+  tellLost_ = false;
+  kernel().log().warning("{}: the link to the host at {} is lost: {}", path(), address_, lostBecause_);
+  Channel& lost = kernel().events().channel(kRemoteLost);
+  const Value data = List{address_, lostBecause_};
+  lost.emitAt(*this, {.name = lost.name(), .data = &data});
+}
+
+/// Runs the handlers of an event, and says that they are done.
+void RemoteMount::pass(const List& event) {
+  if (event.size() < 8 || !event[1].isInteger() || !event[2].isInteger() || !event[3].isNumber() ||
+      !event[4].isNumber() || !event[5].isInteger() || !event[7].isBool())
+    return lose("it sent an event that is not understood");
+  const std::int64_t number = event[1].toInteger();
+  Value answer;
+  const auto at = listeners_.find(static_cast<std::uint64_t>(event[2].toInteger()));
+  if (at != listeners_.end() && at->second.node)
+    at->second.channel->emitAt(*at->second.node, {.name = at->second.channel->name(),
+                                                  .time = event[3].toNumber(),
+                                                  .step = event[4].toNumber(),
+                                                  .cycle = event[5].toInteger(),
+                                                  .data = event[6].isNil() ? nullptr : &event[6],
+                                                  .answer = event[7].toBool() ? &answer : nullptr});
+  if (number != 0 && wire_) wire_->send({kDone, number, answer});
+}
+
+}  // namespace spark

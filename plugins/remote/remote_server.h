@@ -1,0 +1,87 @@
+#pragma once
+/// \file
+/// Serves the tree to other hosts, and looks after the parts of other trees that are mounted in this one.
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "api/inputs.h"
+#include "api/net.h"
+#include "api/phases.h"
+#include "remote_node.h"
+#include "session.h"
+#include "spark/describe.h"
+#include "spark/kernel.h"
+
+namespace spark {
+
+/// Emitted at the server and at a mount when a remote host has gone; the data is {its name or address, why}.
+inline constexpr ChannelName kRemoteLost{"remoteLost"};
+/// Emitted at the server when a remote host has mounted a part of the tree; the data is its name.
+inline constexpr ChannelName kRemoteJoined{"remoteJoined"};
+
+/// The server of remote nodes, at /sys/server/remote. Hosts that mount this one's tree are its clients; the mounts in
+/// this host's own tree are served by it, too.
+class RemoteServer : public Node, public IInputSource, public IInputGate, public IConnectionConsumer {
+  SPARK_CLASS(RemoteServer, Node)
+ public:
+  static constexpr const char* kPath = "/sys/server/remote";
+  static void describe(Description<RemoteServer>& d);
+
+  /// Listens for hosts. `address`: see remote::Address; port 0 is a free one. `token`: what they must know; "" makes
+  /// one up. A Unix socket is open to the user of this host only and needs none. Does nothing while a recording is
+  /// played. Throws Error if it listens already, or if the address cannot be used.
+  void listen(const std::string& address, const std::string& token);
+  /// The token, for what prints it.
+  const std::string& token() const { return token_; }
+
+  void poll() override;
+  bool wait(double seconds) override;
+  bool canWait() const override { return !mounts_.empty(); }
+
+  bool ready(bool lockstep) override;
+
+  // What a recording that is played passes on.
+  void connected(IConnection& connection) override;
+  void received(IConnection& connection, std::string_view message) override;
+  void disconnected(IConnection& connection) override;
+
+ protected:
+  void onLink() override;
+  void onUnlink() override;
+
+ private:
+  template <class Acceptor>
+  void acceptFrom(std::optional<Acceptor>& acceptor);
+  void listenAt(const boost::asio::ip::tcp::endpoint& endpoint);
+  void listenAt(const std::string& path);
+  void dismiss();
+  void setPatience();
+  remote::Session* sessionOf(std::uint64_t key);
+  std::int64_t clients() const { return static_cast<std::int64_t>(sessions_.size()); }
+  std::int64_t lateEvents() const;
+
+  boost::asio::io_context io_;
+  std::optional<boost::asio::ip::tcp::acceptor> tcp_;
+  std::optional<boost::asio::local::stream_protocol::acceptor> local_;
+  std::string address_, token_;
+  double patience_ = 0.005, lockstepPatience_ = 10;
+  Link<IInputTape> tape_;
+  remote::Host host_{*this, tape_, {}};  ///< its patience as the run loop runs now
+  std::vector<std::unique_ptr<remote::Session>> sessions_;
+  std::uint64_t lastKey_ = 0;
+  int expect_ = 0;
+  bool released_ = false;        ///< those that were expected have come
+  std::int64_t lateEvents_ = 0;  ///< of those that have gone
+  Channel* lost_ = nullptr;
+  Channel* joined_ = nullptr;
+  Link<ISimulation> simulation_;
+  Links<IRemoteLink> mounts_;
+};
+
+}  // namespace spark
