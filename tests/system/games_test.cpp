@@ -32,6 +32,36 @@ std::vector<std::string> sumo(const char* name, const TemporaryFolder& folder, s
 }
 }  // namespace
 
+TEST_CASE("A buggy drives laps, by a driver inside and by one over TCP, which do the same") {
+  const auto result = [](Process& host) {
+    const Json line = Json::parse(host.line());
+    CHECK(host.wait() == 0);
+    CHECK(line["status"]["lap"] == 1);
+    CHECK(line["faults"] == 0);
+    return line["status"]["best"].get<double>();
+  };
+  const std::vector<std::string> common{
+      program("sparkhost"), "--config", "buggy.lua",  "--set", "laps=1",      "--rate", "max", "--agent-port", "0",
+      "--monitor-port",     "0",        "--web-port", "0",     "--log-level", "warning"};
+  Process inside(common);
+  inside.line();
+  const double best = result(inside);
+  CHECK(best > 10);
+  CHECK(best < 40);
+  CHECK(inside.errors() == "");
+  Process outside(joined(common, {"--set", "drivers=0", "--sync", "--log-level", "info"}));
+  const Json ports = Json::parse(outside.line());
+  {
+    Client first(ports["agentPort"].get<unsigned short>());  // which leaves again
+    first.send("(syn)");
+    CHECK_THAT(first.receive(), Contains("LDR"));
+  }
+  outside.waitForError("leaves.");
+  Process driver({program("buggy-driver"), "--port", ports["agentPort"].dump()});
+  CHECK(result(outside) == Approx(best).margin(0.5));
+  CHECK(driver.wait() == 0);
+}
+
 TEST_CASE("The score of another game is in the status line, in the page's status, and in the host's last line") {
   TemporaryFolder folder;
   Process host(sumo("sparkhost", folder, {"--agent-port", "0", "--monitor-port", "0", "--web-port", "0"}));

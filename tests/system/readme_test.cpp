@@ -38,6 +38,8 @@ TEST_CASE("The first example in the README of every plugin and of the scripts is
   for (const auto& plugin : fs::directory_iterator(fs::path(SPARK_SOURCES) / "plugins"))
     if (fs::exists(plugin.path() / "README.md")) readmes.push_back(plugin.path() / "README.md");
   REQUIRE(readmes.size() > 10);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());  // some examples write files
   for (const fs::path& readme : readmes) {
     const std::string example = exampleOf(readme);
     INFO(readme.string() << "\n" << example);
@@ -47,6 +49,7 @@ TEST_CASE("The first example in the README of every plugin and of the scripts is
     INFO(checked.errors);
     CHECK(checked.code == 0);
   }
+  fs::current_path(before);
 }
 
 TEST_CASE(
