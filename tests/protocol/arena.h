@@ -136,9 +136,12 @@ class TestScenes : public Node, public ISceneServer {
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
   void place() override {}
+  void placeScene(Node&) override {}
+  const std::vector<Import>& imports() const override { return imports_; }
 
  private:
   std::uint64_t modified_ = 0;
+  std::vector<Import> imports_;
 };
 
 class Arena;
