@@ -90,14 +90,16 @@ function simulation()
   return new("Simulation", "/sys/server/simulation")
 end
 
--- One TCP port with its framing. `consumer` is the path of the server that receives the messages.
-local function tcpPort(name, port, consumer)
+-- One port with its framing. `consumer` is the path of the server that receives the messages. `socket`: file of a Unix
+-- socket that takes the place of the TCP port.
+local function listeningPort(name, port, consumer, framing, socket)
   plugin "net-tcp"
   if not get("/sys/server/net") then new("NetServer", "/sys/server/net") end
-  local node = new("TcpPort", "/sys/server/net/" .. name)
-  new("LengthPrefixFraming", "/sys/server/net/" .. name .. "/framing")
+  local onTcp = (socket or "") == ""
+  local node = new(onTcp and "TcpPort" or "UnixPort", "/sys/server/net/" .. name)
+  new(framing or "LengthPrefixFraming", "/sys/server/net/" .. name .. "/framing")
   node.consumer = consumer
-  node.port = port
+  if onTcp then node.port = port else node.file = socket end
   return node
 end
 
@@ -108,8 +110,9 @@ local function languages()
 end
 
 --- A port for agents; a second one may speak another language: the port's own parser wins over game control's.
-function agentPort(name, port, parser)
-  local node = tcpPort(name, port, "/sys/server/gamecontrol")
+--- `framing`: class that cuts bytes into messages; `socket`: file of a Unix socket in place of TCP.
+function agentPort(name, port, parser, framing, socket)
+  local node = listeningPort(name, port, "/sys/server/gamecontrol", framing, socket)
   node.makeRoom = true                         -- agents send first: one that does not may be closed to admit others
   if parser then new(parser, "/sys/server/net/" .. name .. "/parser") end
   return node
@@ -121,7 +124,11 @@ function agents(t)
   plugin "gamecontrol"
   local server = new("GameControl", "/sys/server/gamecontrol")
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
-  agentPort("agents", t.port or 3100)
+  local framing = option{ name = "agentFraming", default = "LengthPrefixFraming",
+                          doc = "How bytes become messages of agents: LengthPrefixFraming, or LineFraming for one per line." }
+  local socket  = option{ name = "agentSocket", default = "",
+                          doc = "File of a Unix socket for agents of this machine, in place of the TCP port; empty: TCP." }
+  agentPort("agents", t.port or 3100, nil, framing, socket)
   return server
 end
 
@@ -132,7 +139,11 @@ function monitors(t)
   plugin "monitor-json"
   local server = new("MonitorServer", "/sys/server/monitor")
   new(t.encoder or "SexpMonitor", "/sys/server/monitor/encoder")
-  local port = tcpPort("monitors", t.port or 3200, "/sys/server/monitor")
+  local framing = option{ name = "monitorFraming", default = "LengthPrefixFraming",
+                          doc = "The same for monitors: LengthPrefixFraming or LineFraming." }
+  local socket  = option{ name = "monitorSocket", default = "",
+                          doc = "File of a Unix socket for monitors, in place of the TCP port; empty: TCP." }
+  local port = listeningPort("monitors", t.port or 3200, "/sys/server/monitor", framing, socket)
   port.maxConnections = 128
   port.makeRoomAfter = 10                      -- clients that never read are allowed, but 128 of them do not block others
   return server

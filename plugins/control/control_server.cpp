@@ -1,10 +1,10 @@
 #include "control_server.h"
 
 #include <poll.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "api/credentials.h"
+#include "api/unix_socket.h"
 #include "socket_path.h"
 #include "spark/error.h"
 #include "spark/plugin.h"
@@ -39,11 +39,7 @@ void ControlServer::open() {
   const auto folder = control::socketFolder();
   control::removeStale(folder);
   const auto file = control::freeSocket(folder);
-  Protocol::acceptor acceptor(io_);
-  acceptor.open();
-  acceptor.bind(Protocol::endpoint(file.string()));
-  chmod(file.c_str(), 0600);
-  acceptor.listen();
+  Protocol::acceptor acceptor(io_, Protocol(), listenAtUnixSocket(file.string()));
   acceptor.non_blocking(true);
   acceptor_.emplace(std::move(acceptor));
   socket_ = file.string();

@@ -4,35 +4,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/local/stream_protocol.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
 
+#include "api/unix_socket.h"
 #include "spark/error.h"
 
 namespace spark::control {
 
 namespace fs = std::filesystem;
-namespace asio = boost::asio;
 
 namespace {
 fs::path folderName() {
   if (const char* runtime = std::getenv("XDG_RUNTIME_DIR"); runtime && *runtime && fs::is_directory(runtime))
     return fs::path(runtime) / "spark";
   return fs::temp_directory_path() / fmt::format("spark-{}", geteuid());
-}
-
-/// True if a simulation listens on the socket.
-bool isAlive(const fs::path& file) {
-  asio::io_context io;
-  asio::local::stream_protocol::socket socket(io);
-  boost::system::error_code ec;
-  socket.connect(asio::local::stream_protocol::endpoint(file.string()), ec);
-  return !ec;
 }
 }  // namespace
 
@@ -62,7 +51,7 @@ void removeStale(const fs::path& folder) {
     if (file.extension() != ".sock" || pid <= 0 || !it->is_socket(ec)) continue;
     // A dead process alone proves nothing: a process in another container has no pid here. A socket without a listener
     // alone proves nothing either: a new process binds before it listens.
-    if (kill(pid, 0) != 0 && errno == ESRCH && !isAlive(file)) dead.push_back(file);
+    if (kill(pid, 0) != 0 && errno == ESRCH && unix_socket::isAbandoned(file)) dead.push_back(file);
   }
   for (const fs::path& file : dead) fs::remove(file, ec);
 }
@@ -71,7 +60,7 @@ fs::path freeSocket(const fs::path& folder) {
   for (int n = 1;; ++n) {
     fs::path file = folder / (n == 1 ? fmt::format("{}.sock", getpid()) : fmt::format("{}-{}.sock", getpid(), n));
     if (!fs::exists(file)) return file;
-    if (isAlive(file)) continue;
+    if (!unix_socket::isAbandoned(file)) continue;
     fs::remove(file);
     return file;
   }

@@ -4,7 +4,9 @@
 #include <chrono>
 
 #include "net-tcp/length_prefix_framing.h"
+#include "net-tcp/line_framing.h"
 #include "net-tcp/tcp_port.h"
+#include "net-tcp/unix_port.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -23,7 +25,7 @@ NetServer::NetServer() = default;
 void NetServer::describe(Description<NetServer>& d) {
   d.doc("Network server: ports below it bring input to the run loop.");
   d.implements<IInputSource>();
-  d.link(&NetServer::ports_, Below<TcpPort>());
+  d.link(&NetServer::ports_, Below<StreamPort>());
   d.link(&NetServer::tape_, At<IInputTape>());
   d.property("open", &NetServer::open_).doc("False: no port is opened.");
   d.on<&NetServer::endCycle>(phase::kPublish);
@@ -32,15 +34,15 @@ void NetServer::describe(Description<NetServer>& d) {
 
 void NetServer::listen() {
   if (!isOpen()) return;
-  for (const Found<TcpPort>& port : ports_) port->listen();
+  for (const Found<StreamPort>& port : ports_) port->listen();
 }
 
 void NetServer::poll() { pollPorts(); }
 
 bool NetServer::pollPorts() {
   if (!isOpen()) return false;
-  const std::vector<Found<TcpPort>>& ports = ports_.all();
-  if (!std::all_of(ports.begin(), ports.end(), [](const Found<TcpPort>& p) { return p->listening(); })) {
+  const std::vector<Found<StreamPort>>& ports = ports_.all();
+  if (!std::all_of(ports.begin(), ports.end(), [](const Found<StreamPort>& p) { return p->listening(); })) {
     try {
       listen();
     } catch (const Error& e) {
@@ -52,13 +54,13 @@ bool NetServer::pollPorts() {
   io_->restart();
   io_->poll();
   bool any = false;
-  for (const Found<TcpPort>& port : ports_) any |= port->poll();
+  for (const Found<StreamPort>& port : ports_) any |= port->poll();
   if (any) heardAt_ = Clock::now();
   return any;
 }
 
 void NetServer::acknowledge() {
-  for (const Found<TcpPort>& port : ports_) port->acknowledge();
+  for (const Found<StreamPort>& port : ports_) port->acknowledge();
 }
 
 bool NetServer::wait(double seconds) {
@@ -81,5 +83,7 @@ bool NetServer::wait(double seconds) {
 
 }  // namespace spark
 
-SPARK_PLUGIN("net-tcp", "1.0", "Network server with TCP ports on Boost.Asio, and the length-prefix framing.",
-             spark::NetServer, spark::TcpPort, spark::LengthPrefixFraming)
+SPARK_PLUGIN("net-tcp", "1.0",
+             "Network server with ports of TCP and Unix sockets on Boost.Asio; messages by length or by line.",
+             spark::NetServer, spark::StreamPort, spark::TcpPort, spark::UnixPort, spark::LengthPrefixFraming,
+             spark::LineFraming)

@@ -17,7 +17,7 @@
 
 namespace spark {
 
-class TcpPort;
+class StreamPort;
 
 /// At /sys/server/net. It works only within calls of the run loop, in the simulation thread: a cycle sees the input
 /// that had arrived when the run loop polled.
@@ -49,7 +49,7 @@ class NetServer : public Node, public IInputSource {
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_->get_executor()};
   boost::asio::steady_timer timer_{*io_};
   net::HandlerMemory timerMemory_;
-  Links<TcpPort> ports_;
+  Links<StreamPort> ports_;
   Link<IInputTape> tape_;
   bool open_ = true;
   std::chrono::steady_clock::time_point heardAt_{};  ///< when a port last delivered something

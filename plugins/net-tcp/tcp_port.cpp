@@ -1,91 +1,46 @@
 #include "net-tcp/tcp_port.h"
 
-#include <algorithm>
-#include <boost/asio/ip/address.hpp>
-#include <utility>
+#include <netinet/tcp.h>
 
-#include "net-tcp/net_server.h"
+#include <boost/asio/ip/tcp.hpp>
+
 #include "spark/error.h"
 
 namespace spark {
 
 namespace {
+using boost::asio::ip::tcp;
 using boost::system::error_code;
-using net::Clock;
-using net::tcp;
-using net::TcpConnection;
 
-constexpr std::size_t kReadSize = 65536;  // bytes
-constexpr int kReadsPerPoll = 4;          // per connection, so that a flooding client cannot starve others
-constexpr int kAcceptsPerPoll = 64;
-constexpr auto kAcceptRetryDelay = std::chrono::seconds(1);  // after an error, such as too many open files
-constexpr auto kTimeoutCheckInterval = std::chrono::milliseconds(500);
+tcp::endpoint tcpEndpoint(const net::Stream::endpoint& from) {
+  tcp::endpoint to;
+  to.resize(from.size());
+  std::memcpy(to.data(), from.data(), from.size());
+  return to;
+}
+
+/// Detects clients whose machine has failed: after 30 s of silence the system sends probes, and ends the connection
+/// after six unanswered ones. TCP_USER_TIMEOUT is not set, since it would also end clients that merely do not read.
+void enableKeepAlive(net::Stream::socket& socket) {
+  constexpr int kIdle = 30, kInterval = 10, kProbes = 6;  // s, s, number
+  using Idle = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPIDLE>;
+  using Interval = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPINTVL>;
+  using Probes = boost::asio::detail::socket_option::integer<IPPROTO_TCP, TCP_KEEPCNT>;
+  error_code ignored;
+  socket.set_option(net::Stream::socket::keep_alive(true), ignored);
+  socket.set_option(Idle(kIdle), ignored);
+  socket.set_option(Interval(kInterval), ignored);
+  socket.set_option(Probes(kProbes), ignored);
+}
 }  // namespace
 
 void TcpPort::describe(Description<TcpPort>& d) {
-  d.doc(
-      "A listening TCP port; splits input into messages with the framing below it and delivers them to its consumer.");
+  d.doc("A TCP port; splits input into messages with the framing below it and delivers them to its consumer.");
   d.property("port", &TcpPort::port, &TcpPort::setPort)
       .range(0, 65535)
       .ofProcess()
       .doc("Port number; 0 picks a free one, which can be read once it listens.");
   d.property("address", &TcpPort::address_).doc("Address to listen on.");
-  d.link(&TcpPort::framing_, Child<IFraming>());
-  d.link(&TcpPort::tape_, At<IInputTape>());
-  d.link(&TcpPort::named_, At<IConnectionConsumer>(&TcpPort::consumerPath_));
-  d.property("consumer", &TcpPort::consumer, &TcpPort::setConsumer)
-      .doc("Path of the node that gets connections and messages.");
-  d.property("maxMessage", &TcpPort::maxMessage_)
-      .unit("bytes")
-      .range(1, 1 << 30)
-      .doc("A client that announces a longer message is closed.");
-  d.property("maxConnections", &TcpPort::maxConnections_)
-      .range(1, 65536)
-      .doc("Further clients are disconnected at once.");
-  d.property("makeRoom", &TcpPort::makeRoom_)
-      .doc("When there are maxConnections clients, a new one replaces the oldest that never sent a message.");
-  d.property("makeRoomAfter", &TcpPort::makeRoomAfter_)
-      .unit("s")
-      .min(0)
-      .doc(
-          "When it is full, a client that neither reads nor sends for longer than this (wall time) is closed to make "
-          "room; 0: none is.");
-  d.property("messageTimeout", &TcpPort::messageTimeout_)
-      .unit("s")
-      .min(0.001)
-      .doc("A client that takes longer to finish a message it began is closed (wall clock).");
-  d.property("sendBuffer", &TcpPort::sendBuffer_)
-      .unit("bytes")
-      .range(4096, 1 << 28)
-      .doc("Send buffer of the system, which fills for a client that does not read.");
-  d.property("connections", &TcpPort::connectionCount).doc("Number of clients now.");
-  d.property("connectionsSeen", &TcpPort::connectionsSeen).doc("Number of clients that were ever accepted.");
-  d.property("messagesDropped", &TcpPort::messagesDropped)
-      .doc("Messages that were not sent because an earlier one was still unsent.");
-  d.method("listen", &TcpPort::listen).doc("Opens the port; otherwise the first poll does.");
-}
-
-void TcpPort::onLink() {
-  auto* server = ancestor<NetServer>();
-  if (!server)
-    throw Error(fmt::format("A TcpPort lives below a NetServer, found '{}'. Create it as /sys/server/net/<name>.",
-                            parent()->path()));
-  io_ = server->io();
-  scratch_.resize(kReadSize);
-}
-
-void TcpPort::onUnlink() {
-  closeAll();
-  acceptor_.reset();
-  if (!io_) return;
-  io_->restart();
-  io_->poll();  // runs the cancelled waits, which own connections
-  io_.reset();
-}
-
-void TcpPort::closeAll() {
-  for (auto& c : connections_) c->shut();
-  removeClosed();
 }
 
 void TcpPort::setPort(int port) {
@@ -94,225 +49,33 @@ void TcpPort::setPort(int port) {
   port_ = port;
 }
 
-void TcpPort::setConsumer(std::string path) {
-  consumerPath_ = std::move(path);
-  named_.lookAgain();
-}
-
-void TcpPort::logLimited(Level level, std::string_view what) {
-  auto& log = kernel().log();
-  if (log.enabled(level)) log_.write(log, level, fmt::format("Port {} ({}): {}", name(), port_, what));
-}
-
-void TcpPort::updateConsumer() {
-  const Found<IConnectionConsumer> now = named_.found();
-  const bool orphaned = !consumer_ && !connections_.empty();  // their consumer was removed
-  if (now.object == consumer_.get() && !orphaned) return;
-  if (!connections_.empty()) {
-    logLimited(Level::warning, orphaned ? fmt::format("{} was removed, all clients are closed.", consumerPath_)
-                                        : std::string("its consumer changed, all clients are closed."));
-    closeAll();
-  }
-  consumer_ = now;
-}
-
-void TcpPort::listen() {
-  if (listening()) return;
-  updateConsumer();
-  if (!framing_)
-    throw Error(fmt::format("{} has no framing below it. Add one, e.g. new(\"LengthPrefixFraming\", \"{}/framing\").",
-                            path(), path()));
-  if (!consumer_) {
-    require<IConnectionConsumer>(consumerPath_);  // throws with the reason if there is no such node
-    throw Error(fmt::format("{}.consumer = '{}' takes no connections.", path(), consumerPath_));
-  }
+void TcpPort::open(Acceptor& acceptor) {
   error_code ec;
   const auto address = boost::asio::ip::make_address(address_, ec);
   if (ec)
     throw Error(
         fmt::format("{}.address: expected an IP address such as 0.0.0.0 or ::1, found '{}'.", path(), address_));
-  tcp::acceptor acceptor(*io_);
   const tcp::endpoint endpoint(address, static_cast<unsigned short>(port_));
   const char* action = "open";
   const auto failed = [&] { return static_cast<bool>(ec); };
   acceptor.open(endpoint.protocol(), ec);
-  if (!failed()) action = "configure", acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
+  if (!failed()) action = "configure", acceptor.set_option(Acceptor::reuse_address(true), ec);
   if (!failed()) acceptor.non_blocking(true, ec);
   if (!failed()) action = "bind", acceptor.bind(endpoint, ec);
   if (!failed()) action = "listen on", acceptor.listen(boost::asio::socket_base::max_listen_connections, ec);
   if (failed())
-    throw Error(fmt::format("{}: cannot {} {}:{}: {}. Choose another port; 0 picks a free one.", path(), action,
-                            address_, port_, ec.message()));
-  port_ = acceptor.local_endpoint().port();
-  acceptor_.emplace(std::move(acceptor));
-  *acceptReady_ = true;
-  kernel().log().info("Port {}: listening on {}:{}.", name(), address_, port_);
+    throw Error(fmt::format("{}: cannot {} {}: {}. Choose another port; 0 picks a free one.", path(), action, where(),
+                            ec.message()));
+  port_ = tcpEndpoint(acceptor.local_endpoint()).port();
 }
 
-void TcpPort::watchAccept() {
-  *acceptReady_ = false;
-  acceptor_->async_wait(tcp::acceptor::wait_read,
-                        net::MemoryHandler(acceptMemory_, [ready = acceptReady_](const error_code& ec) {
-                          if (!ec) *ready = true;
-                        }));
-}
-
-bool TcpPort::poll() {
-  updateConsumer();
-  bool any = false;
-  for (std::size_t i = 0; i < connections_.size(); ++i) any |= readFrom(*connections_[i]);
-  any |= removeClosed();
-  const std::size_t old = connections_.size();
-  any |= acceptAll();
-  for (std::size_t i = old; i < connections_.size(); ++i) any |= readFrom(*connections_[i]);
-
-  const auto now = Clock::now();
-  if (now - timeoutsChecked_ >= kTimeoutCheckInterval) {
-    timeoutsChecked_ = now;
-    for (auto& c : connections_)
-      if (c->partialSeconds(now) > messageTimeout_)
-        c->close(fmt::format("it began a message and did not finish it within {} s", messageTimeout_));
-  }
-  return removeClosed() || any;
-}
-
-void TcpPort::acknowledge() {
-  for (auto& c : connections_) c->acknowledge();
-}
-
-bool TcpPort::acceptAll() {
-  if (!acceptor_ || !*acceptReady_ || Clock::now() < acceptAgain_) return false;
-  for (int i = 0; i < kAcceptsPerPoll; ++i) {
-    error_code ec;
-    tcp::socket socket(*io_);
-    acceptor_->accept(socket, ec);
-    if (!ec) {
-      addConnection(std::move(socket));
-    } else if (ec == boost::asio::error::would_block) {
-      watchAccept();
-      return i > 0;
-    } else if (ec != boost::asio::error::connection_aborted && ec != boost::asio::error::interrupted) {
-      logLimited(Level::error, fmt::format("cannot take a client: {}. Tried again in a second.", ec.message()));
-      acceptAgain_ = Clock::now() + kAcceptRetryDelay;
-      return i > 0;
-    }
-  }
-  return true;
-}
-
-void TcpPort::addConnection(tcp::socket socket) {
-  error_code ignored;
-  socket.set_option(tcp::socket::send_buffer_size(sendBuffer_), ignored);
-  auto connection =
-      std::make_shared<TcpConnection>(std::move(socket), static_cast<std::uint64_t>(connectionsSeen_ + 1), *this);
-  if (!consumer_) {
-    connection->close(fmt::format("nothing at '{}' takes connections", consumerPath_));
-  } else if (full()) {
-    connection->close(fmt::format("{} clients are connected already (maxConnections)", maxConnections_));
-  } else {
-    ++connectionsSeen_;
-    logLimited(Level::debug, fmt::format("{} connected.", connection->peer()));
-    connections_.push_back(connection);
-    put(Input::Kind::connect, *connection, connection->peer());
-    consumer_->connected(*connection);
-  }
-}
-
-/// True if no further client can be accepted. Closes one to make room if the properties allow it.
-bool TcpPort::full() {
-  const auto open = [](const Connection& c) { return !c->closing(); };
-  if (std::count_if(connections_.begin(), connections_.end(), open) < maxConnections_) return false;
-  TcpConnection* const evicted = connectionToEvict();
-  if (!evicted) return true;
-  evicted->close(evicted->spoken() ? "it neither reads nor sends, and its place is needed"
-                                   : "it said nothing, and its place is needed");
-  return false;
-}
-
-/// The connection to close if the port is full, or nullptr. With `makeRoom`: the oldest that never sent a message. With
-/// `makeRoomAfter`: of those that do not read, one that never sent a message, then the one that was quiet for longest.
-TcpConnection* TcpPort::connectionToEvict() const {
-  const auto now = Clock::now();
-  TcpConnection* best = nullptr;
-  for (const Connection& c : connections_) {
-    if (c->closing()) continue;
-    if (makeRoom_ && !c->spoken()) return c.get();
-    if (makeRoomAfter_ <= 0 || c->quietSeconds(now) <= makeRoomAfter_) continue;
-    const auto rank = [now](const TcpConnection& x) { return std::pair(x.spoken(), -x.quietSeconds(now)); };
-    if (!best || rank(*c) < rank(*best)) best = c.get();
-  }
-  return best;
-}
-
-/// Reads what has arrived and delivers its complete messages; true if there were any.
-bool TcpPort::readFrom(TcpConnection& connection) {
-  bool any = false;
-  for (int i = 0; i < kReadsPerPoll && connection.readable() && !connection.closing(); ++i) {
-    const auto result = connection.read(scratch_);
-    if (result == TcpConnection::Read::nothing) break;
-    if (result == TcpConnection::Read::ended) {
-      if (connection.input().empty())
-        logLimited(Level::debug, fmt::format("{} left.", connection.peer()));
-      else
-        logLimited(Level::info, fmt::format("{} left in the middle of a message.", connection.peer()));
-      connection.shut();
-      break;
-    }
-    const bool delivered = deliverMessages(connection);
-    any |= delivered;
-    // The connection stays readable: by the next poll its next message has usually arrived, and is read without a wait
-    // in between. Only a connection without input is watched.
-    if (delivered && result == TcpConnection::Read::all) break;
-  }
-  return any;
-}
-
-/// Splits the input into messages and delivers them; true if there were any.
-bool TcpPort::deliverMessages(TcpConnection& connection) {
-  const std::string_view all = connection.input();
-  std::size_t at = 0;
-  if (!framing_) {
-    connection.close("its port has no framing below it");
-    return false;
-  }
-  while (!connection.closing()) {
-    const auto frame = framing_->take(all.substr(at), static_cast<std::size_t>(maxMessage_));
-    if (frame.status == IFraming::Frame::Status::bad) connection.close("it " + frame.why);
-    if (frame.status != IFraming::Frame::Status::message) break;
-    at += frame.consumed;
-    connection.markSpoken();
-    if (frame.message.empty()) continue;
-    if (!consumer_) {
-      connection.close(fmt::format("nothing at '{}' takes messages", consumerPath_));
-      break;
-    }
-    put(Input::Kind::message, connection, frame.message);
-    consumer_->received(connection, frame.message);
-  }
-  if (at > 0) connection.markPartial(false);
-  connection.consume(at);
-  connection.markPartial(!connection.input().empty());
-  return at > 0;
-}
-
-/// Writes an input to the tape. While one is played, the network server keeps ports closed.
-void TcpPort::put(Input::Kind kind, const TcpConnection& connection, std::string_view text) {
-  if (tape_) tape_->put({.kind = kind, .place = path(), .key = connection.id(), .text = text});
-}
-
-/// Removes closed connections and notifies the consumer; true if there were any.
-bool TcpPort::removeClosed() {
-  for (auto& c : connections_)
-    if (c->closing()) closed_.push_back(c);
-  if (closed_.empty()) return false;
-  std::erase_if(connections_, [](const Connection& c) { return c->closing(); });
-  for (auto& c : closed_) {
-    if (!consumer_) continue;
-    put(Input::Kind::leave, *c);
-    consumer_->disconnected(*c);
-  }
-  closed_.clear();
-  return true;
+StreamPort::Accepted TcpPort::accepted(net::Stream::socket socket) const {
+  error_code ec;
+  const tcp::endpoint peer = tcpEndpoint(socket.remote_endpoint(ec));
+  std::string name = ec ? std::string("(gone)") : fmt::format("{}:{}", peer.address().to_string(), peer.port());
+  socket.set_option(tcp::no_delay(true), ec);
+  enableKeepAlive(socket);
+  return {std::move(socket), std::move(name), true};
 }
 
 }  // namespace spark

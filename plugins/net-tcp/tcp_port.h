@@ -1,99 +1,32 @@
 #pragma once
 /// \file
-/// A listening TCP port: accepts clients, reads from them round robin, splits the bytes into messages with the framing
-/// below it, delivers the messages to its consumer.
+/// A port for clients over TCP.
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <memory>
-#include <optional>
 #include <string>
-#include <vector>
 
-#include "api/agents.h"
-#include "api/inputs.h"
-#include "api/net.h"
-#include "net-tcp/rate_limited_log.h"
-#include "net-tcp/tcp_connection.h"
-#include "spark/describe.h"
-#include "spark/kernel.h"
+#include "net-tcp/stream_port.h"
 
 namespace spark {
 
-/// A node below the NetServer. Simulation thread only.
-class TcpPort : public Node {
-  SPARK_CLASS(TcpPort, Node)
+/// Listens on a TCP port. Simulation thread only.
+class TcpPort : public StreamPort {
+  SPARK_CLASS(TcpPort, StreamPort)
  public:
   static void describe(Description<TcpPort>& d);
-
-  /// Opens the port; does nothing if it is open. Throws Error if it has no framing or consumer, if the address is
-  /// invalid or in use.
-  void listen();
-  bool listening() const { return acceptor_.has_value(); }
-  /// Reads from all connections in the order in which they were accepted, then accepts new ones and reads from them. A
-  /// connection delivers a bounded amount per call. True if something was delivered.
-  bool poll();
-  /// Acknowledges what was read from connections that have got no output since. Costs nothing for all others.
-  void acknowledge();
-
-  // For connections of this port.
-
-  /// Appends the framed message.
-  void frame(std::string_view message, std::string& out) { framing_->frame(message, out); }
-  /// Counts a message that was not sent.
-  void countDropped() { ++messagesDropped_; }
-  /// Writes a rate-limited log line that names this port.
-  void logLimited(Level level, std::string_view what);
 
   /// The port number: the open one if it listens, otherwise the property, where 0 means any free port.
   int port() const { return port_; }
   /// Throws Error if it listens already.
   void setPort(int port);
+  std::string where() const override { return fmt::format("{}:{}", address_, port_); }
 
  protected:
-  void onLink() override;
-  void onUnlink() override;
+  void open(Acceptor& acceptor) override;
+  Accepted accepted(net::Stream::socket socket) const override;
 
  private:
-  using Connection = std::shared_ptr<net::TcpConnection>;
-  void updateConsumer();
-  void watchAccept();
-  bool acceptAll();
-  void addConnection(net::tcp::socket socket);
-  bool readFrom(net::TcpConnection& connection);
-  bool deliverMessages(net::TcpConnection& connection);
-  bool removeClosed();
-  bool full();
-  net::TcpConnection* connectionToEvict() const;
-  void closeAll();
-  void put(Input::Kind kind, const net::TcpConnection& connection, std::string_view text = {});
-  std::int64_t messagesDropped() const { return messagesDropped_; }
-  std::int64_t connectionsSeen() const { return connectionsSeen_; }
-  int connectionCount() const { return static_cast<int>(connections_.size()); }
-  std::string consumer() const { return consumerPath_; }
-  void setConsumer(std::string path);
-
-  std::shared_ptr<boost::asio::io_context> io_;
-  std::optional<net::tcp::acceptor> acceptor_;
-  net::HandlerMemory acceptMemory_;
-  std::shared_ptr<bool> acceptReady_ = std::make_shared<bool>(false);  ///< shared with the pending wait
-  net::Clock::time_point acceptAgain_{}, timeoutsChecked_{};
-  std::vector<Connection> connections_;  ///< in the order in which they were accepted
-  std::vector<Connection> closed_;       ///< used by removeClosed()
-  std::string scratch_;                  ///< buffer of one read
-  net::RateLimitedLog log_;
-
   int port_ = 0;
-  std::string address_ = "0.0.0.0", consumerPath_ = IGameControl::kPath;
-  bool makeRoom_ = false;
-  int maxMessage_ = 65536, maxConnections_ = 64, sendBuffer_ = 262144;
-  double messageTimeout_ = 30, makeRoomAfter_ = 0;
-  std::int64_t messagesDropped_ = 0, connectionsSeen_ = 0;
-
-  Link<IFraming> framing_;
-  Link<IInputTape> tape_;
-  Link<IConnectionConsumer> named_;    ///< at the path of the property
-  Ref<IConnectionConsumer> consumer_;  ///< consumer of all current connections
+  std::string address_ = "0.0.0.0";
 };
 
 }  // namespace spark

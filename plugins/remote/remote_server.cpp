@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <filesystem>
 
 #include "api/credentials.h"
+#include "api/unix_socket.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -81,7 +81,7 @@ void RemoteServer::listen(const std::string& address, const std::string& token) 
     if (!at.path.empty()) return listenAt(at.path);
     token_ = token.empty() ? makeToken() : token;
     listenAt(*Tcp::resolver(io_).resolve(at.host, at.port, Tcp::resolver::passive).begin());
-  } catch (const boost::system::system_error& e) {
+  } catch (const std::exception& e) {
     throw Error(fmt::format("cannot listen for remote hosts at {}", address), e);
   }
 }
@@ -97,23 +97,9 @@ void RemoteServer::listenAt(const Tcp::endpoint& endpoint) {
 }
 
 void RemoteServer::listenAt(const std::string& path) {
-  struct stat found = {};
-  if (::stat(path.c_str(), &found) == 0 && S_ISSOCK(found.st_mode)) {
-    error_code refused;
-    Local::socket knock(io_);
-    knock.open();
-    knock.non_blocking(true);
-    knock.connect(Local::endpoint(path), refused);
-    // A host that was killed has left it.
-    if (refused == boost::asio::error::connection_refused) ::unlink(path.c_str());
-  }
-  Local::acceptor acceptor(io_);
-  acceptor.open();
-  acceptor.bind(Local::endpoint(path));
-  address_ = std::filesystem::absolute(path).string();
-  ::chmod(address_.c_str(), 0600);
-  acceptor.listen();
+  Local::acceptor acceptor(io_, Local(), listenAtUnixSocket(path));
   acceptor.non_blocking(true);
+  address_ = std::filesystem::absolute(path).string();
   local_.emplace(std::move(acceptor));
 }
 

@@ -18,6 +18,7 @@
 
 #include "api/agents.h"
 #include "api/match.h"
+#include "api/unix_socket.h"
 #include "test_support.h"
 
 namespace spark::test {
@@ -150,6 +151,8 @@ class Arena;
 class Client {
  public:
   Client(Arena& arena, int port);
+  /// Connects to a Unix socket.
+  Client(Arena& arena, const std::string& file);
   Client(Client&& other) noexcept
       : arena_(other.arena_), fd_(std::exchange(other.fd_, -1)), in_(std::move(other.in_)) {}
   ~Client() { leave(); }
@@ -181,6 +184,8 @@ class Client {
   void arrive() const;
   /// The next message; polls the server until it arrives. Empty if the connection was closed.
   std::optional<std::string> receive();
+  /// All bytes that have arrived, at least `n` unless the connection was closed; polls the server meanwhile.
+  std::string receiveBytes(std::size_t n);
   /// The messages that have arrived, without waiting.
   std::vector<std::string> drain();
   /// Waits until the server closes the connection; returns true when it has.
@@ -312,6 +317,12 @@ inline Client::Client(Arena& arena, int port) : arena_(arena), fd_(::socket(AF_I
   ::setsockopt(fd_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
 }
 
+inline Client::Client(Arena& arena, const std::string& file) : arena_(arena), fd_(::socket(AF_UNIX, SOCK_STREAM, 0)) {
+  const sockaddr_un to = unix_socket::addressOf(file);
+  if (::connect(fd_, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0)
+    throw Error(std::string("connect: ") + std::strerror(errno));
+}
+
 inline std::string Client::name() const {
   sockaddr_in self{};
   socklen_t n = sizeof self;
@@ -366,6 +377,11 @@ inline std::optional<std::string> Client::receive() {
   std::optional<std::string> message;
   arena_.until([&] { return (message = pop()) || (!take() && ended_); }, false);
   return message;
+}
+
+inline std::string Client::receiveBytes(std::size_t n) {
+  arena_.until([&] { return in_.size() >= n || (!take() && ended_); }, false);
+  return std::exchange(in_, {});
 }
 
 inline std::vector<std::string> Client::drain() {

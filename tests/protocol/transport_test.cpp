@@ -1,6 +1,11 @@
-#include <catch2/catch.hpp>
+#include <sys/stat.h>
 
+#include <catch2/catch.hpp>
+#include <filesystem>
+
+#include "api/unix_socket.h"
 #include "arena.h"
+#include "temporary_folder.h"
 #include "test_consumer.h"
 
 using namespace spark;
@@ -40,6 +45,88 @@ TEST_CASE("Messages are read from the stream with any segment boundaries") {
   }
   w.waitForEvents(4);
   REQUIRE(w.consumer->events == Wire::Events{"+1", "1:a", "1:bc", "1:d"});
+}
+
+TEST_CASE("A line is a message, with any segment boundaries and either line end") {
+  Wire w;
+  Node& port = *w.port().asNode();
+  port.remove(*port.find("framing"));
+  w.kernel.create("LineFraming", port.path() + "/framing");
+  setProperty(port, "maxMessage", 8);
+  Client c = w.client();
+  SECTION("several in one segment") { c.raw("a\nb c\r\n\n12345678\r\nlast\n"); }
+  SECTION("byte by byte") {
+    for (const char byte : std::string("a\nb c\r\n\n12345678\r\nlast\n")) {
+      c.raw({&byte, 1});
+      w.net->poll();
+    }
+  }
+  w.waitForEvents(5);
+  REQUIRE(w.consumer->events == Wire::Events{"+1", "1:a", "1:b c", "1:12345678", "1:last"});
+  SECTION("what is sent is one line") {
+    REQUIRE(w.consumer->connections.front()->send("(a\n b)"));
+    REQUIRE(c.receiveBytes(7) == "(a  b)\n");
+  }
+  SECTION("a longer line is refused, finished or not") {
+    c.raw(GENERATE("123456789\n", "123456789"));
+    REQUIRE(c.closed());
+    REQUIRE_THAT(w.host.text, Catch::Contains("a line per message is expected"));
+  }
+}
+
+TEST_CASE("A Unix socket is a port like any other") {
+  Wire w;
+  TemporaryFolder folder;
+  const std::string file = folder.file("agents.sock");
+  w.kernel.create("UnixPort", "/sys/server/net/local");
+  w.kernel.create("LengthPrefixFraming", "/sys/server/net/local/framing");
+  setProperty(w.port("local"), "consumer", "/usr/consumer");
+  setProperty(w.port("local"), "file", file);
+  SECTION("it delivers, sends, and knows the process of its client") {
+    callMethod(w.port("local"), "listen", {});
+    Client c(w, file);
+    w.waitForEvents(1);
+    REQUIRE(w.consumer->connections.front()->peer() == fmt::format("process {}", ::getpid()));
+    c.send("hello");
+    w.waitForEvents(2);
+    REQUIRE(w.consumer->events == Wire::Events{"+1", "1:hello"});
+    REQUIRE(w.consumer->connections.front()->send("answer"));
+    REQUIRE(c.receive() == "answer");
+  }
+  SECTION("only its user can open it, and it is removed at the end") {
+    callMethod(w.port("local"), "listen", {});
+    struct stat found = {};
+    REQUIRE(::stat(file.c_str(), &found) == 0);
+    REQUIRE((found.st_mode & 0777) == 0600);
+    w.port("local").parent()->remove(w.port("local"));
+    REQUIRE_FALSE(std::filesystem::exists(file));
+  }
+  SECTION("one that a dead program left is replaced") {
+    ::close(listenAtUnixSocket(file));
+    REQUIRE(std::filesystem::exists(file));
+    callMethod(w.port("local"), "listen", {});
+    Client c(w, file);
+    w.waitForEvents(1);
+  }
+  SECTION("one in use, a file, and a name that is too long are errors that say so") {
+    const auto listen = [&] {
+      try {
+        callMethod(w.port("local"), "listen", {});
+        return std::string();
+      } catch (const Error& e) {
+        return std::string(e.what());
+      }
+    };
+    const int other = listenAtUnixSocket(file);
+    REQUIRE_THAT(listen(), Catch::Contains("cannot listen") && Catch::Contains("in use"));
+    ::close(other);
+    setProperty(w.port("local"), "file", folder.write("file", "text"));
+    REQUIRE_THAT(listen(), Catch::Contains("in use"));
+    setProperty(w.port("local"), "file", folder.file(std::string(200, 'x')));
+    REQUIRE_THAT(listen(), Catch::Contains("1 to 107 bytes"));
+    setProperty(w.port("local"), "file", "");
+    REQUIRE_THAT(listen(), Catch::Contains("1 to 107 bytes"));
+  }
 }
 
 TEST_CASE("Messages are delivered connection by connection in accept order, ports in tree order") {

@@ -114,6 +114,11 @@ TEST_CASE("A flag for a feature that the config lacks is an error that names the
   CHECK_THAT(error({"--expect", "2"}), Contains("--expect 2: config 'boxes.lua' has no agents and no port for them"));
   CHECK_THAT(error({"--set", "web=false", "--web-port", "0"}),
              Contains("--web-port 0: config 'boxes.lua' has no page for browsers"));
+  const Finished f = runToEnd(
+      host({"--config", "soccer-sphere.lua", "--check", "--set", "agentSocket=agents.sock", "--agent-port", "3100"}));
+  CHECK(f.code == 2);
+  CHECK_THAT(f.errors, Contains("--agent-port 3100: /sys/server/net/agents is a UnixPort, which has no property "
+                                "'port'; omit --agent-port."));
   REQUIRE(runToEnd(host({"--config", "boxes.lua", "--check", "--web-port", "0", "--rate", "max", "--sync"})).code == 0);
 }
 

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -20,6 +21,8 @@ struct Match {
   double seconds = 12;
   bool blueFirst = false;
   std::string redParser = "SexpParser", blueParser = "SexpParser";
+  std::string socket;  ///< Unix socket of the agents; "": TCP
+  std::string framing = "length";
   std::string bluePort;  ///< name of the port node that Blue connects to; "" is the first
   std::vector<std::string> arguments;
 
@@ -36,26 +39,35 @@ struct Match {
                                      std::to_string(2 * players),
                                      "--duration",
                                      std::to_string(seconds),
-                                     "--agent-port",
-                                     "0",
                                      "--monitor-port",
                                      "0",
                                      "--log-level",
                                      "warning"};
+    command = joined(command, socket.empty() ? std::vector<std::string>{"--agent-port", "0"}
+                                             : std::vector<std::string>{"--set", "agentSocket=" + socket});
     auto host = std::make_unique<Process>(joined(joined(command, withoutLimits()), arguments));
     ports = Json::parse(host->line());
     return host;
   }
   std::unique_ptr<Process> team(const char* name, const std::string& port, const std::string& parser) const {
-    std::vector<std::string> command{program("sphere-team"),  "--team",   name,  "--port", port, "--players",
-                                     std::to_string(players), "--parser", parser};
+    std::vector<std::string> command{program("sphere-team"),
+                                     "--team",
+                                     name,
+                                     "--players",
+                                     std::to_string(players),
+                                     "--parser",
+                                     parser,
+                                     "--framing",
+                                     framing};
+    command = joined(command, {socket.empty() ? "--port" : "--socket", port});
     if (blueFirst) command.push_back("--reverse");
     return std::make_unique<Process>(command);
   }
   Json play() const {
     Json ports;
     const auto host = start(ports);
-    const std::string port = std::to_string(ports["agentPort"].get<int>());
+    const std::string port =
+        socket.empty() ? std::to_string(ports["agentPort"].get<int>()) : ports["agentSocket"].get<std::string>();
     const std::string other = bluePort.empty() ? port : portOf(*host, bluePort);
     std::unique_ptr<Process> red, blue;
     if (blueFirst) blue = team("Blue", other, blueParser);
@@ -132,6 +144,24 @@ TEST_CASE("Two ports use two message formats at the same time") {
   m.bluePort = "json";
   m.blueParser = "JsonParser";
   REQUIRE(m.hash() == referenceHash());
+}
+
+TEST_CASE("A match over a Unix socket, or with a message per line, is the same match") {
+  TemporaryFolder folder;
+  Match m;
+  SECTION("Unix socket") { m.socket = folder.file("agents.sock"); }
+  SECTION("lines") {
+    m.framing = "line";
+    m.arguments = {"--set", "agentFraming=LineFraming"};
+  }
+  SECTION("both, in JSON") {
+    m.socket = folder.file("agents.sock");
+    m.framing = "line";
+    m.arguments = {"--set", "agentFraming=LineFraming", "--set", "parser=JsonParser"};
+    m.redParser = m.blueParser = "JsonParser";
+  }
+  REQUIRE(m.hash() == referenceHash());
+  REQUIRE_FALSE(std::filesystem::exists(folder.file("agents.sock")));
 }
 
 TEST_CASE("Monitors receive JSON if the config selects it") {

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <boost/asio/connect.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/local/stream_protocol.hpp>
 #include <boost/asio/write.hpp>
 #include <chrono>
 #include <thread>
@@ -23,19 +25,37 @@ constexpr std::size_t kRoom = 16384;          // bytes per read
 constexpr auto kRetry = std::chrono::milliseconds(100);
 }  // namespace
 
-void AgentConnection::connect(const std::string& host, int port, double patience) {
+void AgentConnection::connect(const std::string& where, double patience, const std::function<error_code()>& attempt) {
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::duration<double>(patience);
-  for (;;) {
-    error_code ec;
-    tcp::resolver resolver(socket_.get_executor());
-    const auto found = resolver.resolve(host, std::to_string(port), ec);
-    if (!ec) asio::connect(socket_, found, ec);
-    if (!ec) break;
+  while (const error_code ec = attempt()) {
     if (std::chrono::steady_clock::now() >= deadline)
-      throw Error(fmt::format("cannot reach a server at {}:{}: {}", host, port, ec.message()));
+      throw Error(fmt::format("cannot reach a server at {}: {}", where, ec.message()));
     std::this_thread::sleep_for(kRetry);
   }
-  socket_.set_option(tcp::no_delay(true));
+}
+
+void AgentConnection::connect(const std::string& host, int port, double patience) {
+  tcp::socket socket(socket_.get_executor());
+  connect(fmt::format("{}:{}", host, port), patience, [&] {
+    error_code ec;
+    const auto found = tcp::resolver(socket.get_executor()).resolve(host, std::to_string(port), ec);
+    if (!ec) asio::connect(socket, found, ec);
+    return ec;
+  });
+  socket.set_option(tcp::no_delay(true));
+  socket_ = std::move(socket);
+}
+
+void AgentConnection::connectTo(const std::string& file, double patience) {
+  using Local = asio::local::stream_protocol;
+  Local::socket socket(socket_.get_executor());
+  connect(file, patience, [&] {
+    error_code ec, ignored;
+    if (socket.is_open()) socket.close(ignored);
+    socket.connect(Local::endpoint(file), ec);
+    return ec;
+  });
+  socket_ = std::move(socket);
 }
 
 void AgentConnection::start(const Predicates& first, OnMessage onMessage, OnEnd onEnd) {
@@ -52,10 +72,15 @@ void AgentConnection::close() {
 
 // A blocking write: messages are small and the server always reads, so it returns at once, and messages stay in order.
 void AgentConnection::send(const Predicates& predicates) {
-  out_.assign(4, '\0');
+  out_.assign(framing_ == Framing::length ? kPrefix : 0, '\0');
   language_.write(predicates, out_);
-  const std::size_t n = out_.size() - 4;
-  for (int i = 0; i < 4; ++i) out_[static_cast<std::size_t>(i)] = static_cast<char>(n >> (24 - 8 * i));
+  if (framing_ == Framing::line) {
+    std::replace(out_.begin(), out_.end(), '\n', ' ');
+    out_ += '\n';
+  } else {
+    const std::size_t n = out_.size() - kPrefix;
+    for (std::size_t i = 0; i < kPrefix; ++i) out_[i] = static_cast<char>(n >> (24 - 8 * i));
+  }
   error_code ec;
   asio::write(socket_, asio::buffer(out_), ec);
   if (ec) end("sending failed: " + ec.message());
@@ -73,19 +98,37 @@ void AgentConnection::receive() {
                           });
 }
 
+std::optional<std::string_view> AgentConnection::next(std::string_view all, std::size_t& at) {
+  const std::string_view rest = all.substr(at);
+  std::size_t start = 0, length = 0, end = 0;
+  if (framing_ == Framing::line) {
+    length = std::min(rest.find('\n'), rest.size());
+    end = length + 1;
+  } else if (rest.size() < kPrefix) {
+    return std::nullopt;
+  } else {
+    for (const unsigned char byte : rest.substr(0, kPrefix)) length = length << 8 | byte;
+    start = kPrefix;
+    end = kPrefix + length;
+  }
+  if (length > kMaxMessage) {
+    this->end(fmt::format("the server sends a message of {} bytes or more: it speaks another protocol", length));
+    return std::nullopt;
+  }
+  if (end > rest.size()) return std::nullopt;
+  at += end;
+  return rest.substr(start, length);
+}
+
 /// Answers every complete message in the buffer.
 void AgentConnection::answerAll() {
   const std::string_view all(in_.data(), filled_);
   std::size_t at = 0;
-  while (socket_.is_open() && all.size() - at >= kPrefix) {
-    std::size_t n = 0;
-    for (const unsigned char byte : all.substr(at, kPrefix)) n = n << 8 | byte;
-    if (n > kMaxMessage)
-      return end(fmt::format("the server announced a message of {} bytes: it speaks another protocol", n));
-    if (all.size() - at - kPrefix < n) break;
+  while (socket_.is_open()) {
+    const auto message = next(all, at);
+    if (!message) break;
     ++received_;
-    answer(all.substr(at + kPrefix, n));
-    at += kPrefix + n;
+    answer(*message);
   }
   std::copy(in_.data() + at, in_.data() + filled_, in_.data());
   filled_ -= at;

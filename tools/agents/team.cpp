@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <boost/asio/io_context.hpp>
 #include <filesystem>
+#include <map>
 #include <vector>
 
 #include "agent_connection.h"
@@ -20,9 +21,12 @@ class Participant {
  public:
   Participant(asio::io_context& io, Language& language, std::unique_ptr<Player> player,
               const TeamProgram::Options& options)
-      : player_(std::move(player)), connection_(io, language) {
+      : player_(std::move(player)), connection_(io, language, options.framing) {
     connection_.setListens(player_->listens());
-    connection_.connect(options.host, options.port, options.patience);
+    if (options.socket.empty())
+      connection_.connect(options.host, options.port, options.patience);
+    else
+      connection_.connectTo(options.socket, options.patience);
   }
   void start() {
     Predicates first;
@@ -57,6 +61,10 @@ TeamProgram::TeamProgram(std::string name, const std::string& description, int m
   options_.players = most;
   app_->add_option("--host", options_.host, "The server")->capture_default_str();
   app_->add_option("--port", options_.port, "Its agent port")->check(CLI::Range(1, 65535))->capture_default_str();
+  app_->add_option("--socket", options_.socket, "Its Unix socket, in place of host and port");
+  app_->add_option("--framing", options_.framing, "How it separates messages")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Framing>{{"length", Framing::length}, {"line", Framing::line}}));
   app_->add_option("--team", options_.team, "Name of the team")->capture_default_str();
   app_->add_option("--players", options_.players, "Players; number 1 keeps the goal")
       ->check(CLI::Range(1, most))

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "agent_connection.h"
 #include "spark/predicates.h"
 
 namespace CLI {
@@ -41,7 +42,8 @@ class TeamProgram {
  public:
   /// The command line options of all teams.
   struct Options {
-    std::string host = "127.0.0.1", team = "Spark", parser = "SexpParser";
+    std::string host = "127.0.0.1", socket, team = "Spark", parser = "SexpParser";
+    Framing framing = Framing::length;
     int port = 3100, players = 11;
     double patience = 10;
     bool reverse = false, quiet = false;

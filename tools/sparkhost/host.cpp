@@ -22,9 +22,14 @@ namespace {
 constexpr const char* kTape = "/sys/host/tape";
 
 /// Writes the number of a port; null if there is no such port.
-void writePort(JsonWriter& json, const char* name, const Leaf& root, const char* path) {
+/// Writes the number of a TCP port as `name`Port, null if there is none, or the file of a Unix socket as `name`Socket.
+void writePort(JsonWriter& json, const std::string& name, const Leaf& root, const char* path) {
+  if (const Value file = valueAt(root, path, "file"); !file.isNil()) {
+    json.member(name + "Socket", file.plain());
+    return;
+  }
   const Value v = valueAt(root, path, "port");
-  json.key(name).raw(v.isNil() ? "null" : v.plain());
+  json.key(name + "Port").raw(v.isNil() ? "null" : v.plain());
 }
 
 /// Writes the link for browsers; null if there is none.
@@ -103,6 +108,9 @@ void Host::applySwitches(std::size_t first) {
     if (!node)
       throw Error(fmt::format("{}: config '{}' has no {}; or omit {}.", s.flag, options_.config, s.missing,
                               s.flag.substr(0, s.flag.find(' '))));
+    if (!node->classObject()->property(s.property))
+      throw Error(fmt::format("{}: {} is a {}, which has no property '{}'; omit {}.", s.flag, s.path,
+                              node->classObject()->name(), s.property, s.flag.substr(0, s.flag.find(' '))));
     setProperty(*node, s.property, s.value);
   }
 }
@@ -131,8 +139,8 @@ std::string Host::open() {
   std::string line;
   JsonWriter json(line);
   json.beginObject();
-  writePort(json, "agentPort", root, "/sys/server/net/agents");
-  writePort(json, "monitorPort", root, "/sys/server/net/monitors");
+  writePort(json, "agent", root, "/sys/server/net/agents");
+  writePort(json, "monitor", root, "/sys/server/net/monitors");
   writeWeb(json, root);
   json.endObject();
   return line;

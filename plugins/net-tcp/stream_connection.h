@@ -6,7 +6,7 @@
 /// in the port's order: the order of delivery depends on what has arrived, not on the order in which the operating
 /// system reports it.
 
-#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/generic/stream_protocol.hpp>
 #include <chrono>
 #include <memory>
 #include <string>
@@ -15,16 +15,17 @@
 #include "net-tcp/handler_memory.h"
 
 namespace spark {
-class TcpPort;
+class StreamPort;
 }
 
 namespace spark::net {
 
-using boost::asio::ip::tcp;
+/// The sockets of all transports: TCP, Unix.
+using Stream = boost::asio::generic::stream_protocol;
 using Clock = std::chrono::steady_clock;
 
-/// Owned by its TcpPort and by its pending waits. Simulation thread only.
-class TcpConnection final : public IConnection, public std::enable_shared_from_this<TcpConnection> {
+/// Owned by its StreamPort and by its pending waits. Simulation thread only.
+class StreamConnection final : public IConnection, public std::enable_shared_from_this<StreamConnection> {
  public:
   /// Result of read().
   enum class Read {
@@ -34,8 +35,14 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
     ended,    ///< the client closed the connection or it failed
   };
 
+  /// A client that was accepted. `peer`: its address. `delaysAcks`: its system waits for acknowledgements, as TCP does.
+  struct Accepted {
+    Stream::socket socket;
+    std::string peer;
+    bool delaysAcks = false;
+  };
   /// `id`: unique within the port. `port` must outlive it.
-  TcpConnection(tcp::socket socket, std::uint64_t id, TcpPort& port);
+  StreamConnection(Accepted accepted, std::uint64_t id, StreamPort& port);
 
   std::uint64_t id() const override { return id_; }
   const std::string& peer() const override { return peer_; }
@@ -83,8 +90,8 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   /// Writes unsent output as far as the system takes it; false if the connection failed.
   bool flush();
 
-  tcp::socket socket_;
-  TcpPort& port_;
+  Stream::socket socket_;
+  StreamPort& port_;
   const std::uint64_t id_;
   std::string peer_, input_;
   std::string out_;          ///< the framed message that is being sent
@@ -96,9 +103,10 @@ class TcpConnection final : public IConnection, public std::enable_shared_from_t
   bool readable_ = true, closing_ = false, partial_ = false, watchingWrite_ = false, spoken_ = false;
   static constexpr int kRegular = 100;
   bool unanswered_ = false;  ///< bytes were read, and nothing was sent since
-  bool owesAck_ = false;     ///< they are not acknowledged
-  bool inPieces_ = false;    ///< it sends more than one piece per output: each is acknowledged at once
-  int regular_ = 0;          ///< outputs since it last did; after kRegular it counts as a client that does not
+  const bool delaysAcks_;
+  bool owesAck_ = false;   ///< they are not acknowledged
+  bool inPieces_ = false;  ///< it sends more than one piece per output: each is acknowledged at once
+  int regular_ = 0;        ///< outputs since it last did; after kRegular it counts as a client that does not
 };
 
 }  // namespace spark::net
