@@ -26,9 +26,8 @@ void UnixPort::setFile(std::string file) {
 
 void UnixPort::open(Acceptor& acceptor) {
   try {
+    acceptor.assign(net::Stream(AF_UNIX, 0), listenAtUnixSocket(file_));
     bound_ = std::filesystem::absolute(file_).string();
-    const int descriptor = listenAtUnixSocket(file_);
-    acceptor.assign(net::Stream(AF_UNIX, 0), descriptor);
     acceptor.non_blocking(true);
   } catch (const std::exception& e) {
     throw Error(fmt::format("{} cannot listen", path()), e);

@@ -54,12 +54,11 @@ TEST_CASE("A line is a message, with any segment boundaries and either line end"
   w.kernel.create("LineFraming", port.path() + "/framing");
   setProperty(port, "maxMessage", 8);
   Client c = w.client();
-  SECTION("several in one segment") { c.raw("a\nb c\r\n\n12345678\r\nlast\n"); }
-  SECTION("byte by byte") {
-    for (const char byte : std::string("a\nb c\r\n\n12345678\r\nlast\n")) {
-      c.raw({&byte, 1});
-      w.net->poll();
-    }
+  const std::string lines = "a\nb c\r\n\n12345678\r\nlast\n";
+  const std::size_t segment = GENERATE(std::size_t(1), std::size_t(100));
+  for (std::size_t at = 0; at < lines.size(); at += segment) {
+    c.raw(std::string_view(lines).substr(at, segment));
+    w.net->poll();
   }
   w.waitForEvents(5);
   REQUIRE(w.consumer->events == Wire::Events{"+1", "1:a", "1:b c", "1:12345678", "1:last"});
