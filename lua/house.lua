@@ -149,6 +149,13 @@ function monitors(t)
   return server
 end
 
+--- Sounds for monitors and the page: SoundHandlers below colliders, and sounds:play("whistle", 1, { 0, 0, 1 }). Call it
+--- after monitors() or web(); simulations without a monitor server, such as those of a batch, are silent.
+function soundServer()
+  plugin "sounds"
+  return get("/sys/server/monitor") and new("Sounds", "/sys/server/monitor/sounds")
+end
+
 --- The web page that shows the match: `--set web=false` disables it, `--set webPort=0` selects a free port, `--set
 --- webLogs=FOLDER` lets the viewer play recorded games. Call it after monitors(); without monitors(), it creates a
 --- monitor server without a port. Simulations of a batch have no page.

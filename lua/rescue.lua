@@ -9,7 +9,7 @@ local robots = option{ name = "robots", default = 4, choices = { 0, 1, 2, 3, 4 }
 local force  = option{ name = "force", default = 120.0, doc = "Of a robot's full push, in N." }
 files() scene() materials() physics(engineOption()) simulation()
 agents{}.maxAgents = 4
-monitors{} web() control() plugin "effectors"
+monitors{} web() control() plugin "effectors" soundServer()
 local game = status{ playMode = "Rescue", teams = { "Rescued", "Buried" }, score = { 0, 3 } }
 
 get("/usr/scene"):importScene("rsg/rescue/site.rsg")
