@@ -7,6 +7,11 @@ function(spark_plugin name)
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} DEFINE_SYMBOL ""
     CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
   target_link_libraries(${target} PRIVATE Spark::plugin ${ARG_LIBRARIES})
+  # A function that nothing defines is an error here, not when a host loads the plugin. Clang cannot: it links the
+  # runtime of a sanitizer to programs alone.
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_link_options(${target} PRIVATE LINKER:-z,defs)
+  endif()
   if(TARGET spark-pch)  # inside the project
     set_target_properties(${target} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/plugins
       INSTALL_RPATH "$ORIGIN/../..")
