@@ -30,8 +30,9 @@ decltype(auto) Run::located(const Site& site, F f) const {
 
 Run::Run(RsgImporter& importer, const Program& program, std::vector<std::string> arguments)
     : importer_(importer),
+      scenes_(importer.kernel().root().find<ISceneServer>()),
       program_(program),
-      environment_(program, std::move(arguments), importer.rules_.defineByName) {}
+      environment_(program, std::move(arguments), importer.rules_.defineByName || program.ours) {}
 
 void Run::execute(Node& root) {
   root_ = &root;
@@ -84,6 +85,7 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
     case Statement::Kind::choose:
       return choose(s, cursor);
     case Statement::Kind::call:
+    case Statement::Kind::set:
       return call(s, node);
     case Statement::Kind::error:
       throw Error(s.text);
@@ -135,7 +137,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
     try {
       runBlock(s.blocks[i], cursor);
     } catch (const Error& e) {
-      if (importer_.rules_.strict || importer_.budget_.exhausted) throw;
+      if (strict() || importer_.budget_.exhausted) throw;
       complain(s, Level::error, fmt::format("the case '{}' failed, the rest goes on: {}", value, e.what()));
     }
     return;
@@ -172,7 +174,7 @@ void Run::import(const Statement& s, Node& node, const List& arguments) {
     importer_.kernel().root().require<ISceneServer>().importScene(file, node,
                                                                   List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
-    if (importer_.rules_.strict || importer_.budget_.exhausted)
+    if (strict() || importer_.budget_.exhausted)
       throw Located(fmt::format("{}: the import of '{}' failed", where(program_, s.site), file), e);
     complain(s, Level::error, fmt::format("the import of '{}' failed, the rest goes on: {}", file, e.what()));
   }
@@ -188,9 +190,10 @@ const Method* Run::methodOf(const Statement& s, Leaf& node) const {
 }
 
 void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
+  if (s.kind == Statement::Kind::set) return set(s, node, arguments);
   const Method* method = methodOf(s, node);
   if (!method) {
-    if (s.complained && !importer_.rules_.strict) return;
+    if (s.complained && !strict()) return;
     std::vector<std::string> names;
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
     return complain(
@@ -198,7 +201,8 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
         fmt::format("class {} has no method '{}'.{}", node.classObject()->name(), s.text, didYouMean(s.text, names)));
   }
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
-  if (importer_.rules_.strict || !importer_.rules_.looseArguments) {
+  beforeCall(s, node);
+  if (strict() || !importer_.rules_.looseArguments) {
     callMethod(node, s.text, arguments);
     return;
   }
@@ -206,6 +210,35 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   std::string whyNot;
   if (!callLoosely(node, *method, arguments, whyNot))
     complain(s, Level::warning, fmt::format("{} of {} is skipped: {}", s.text, called.name(), whyNot));
+}
+
+void Run::set(const Statement& s, Leaf& node, const List& arguments) {
+  ClassObject& c = *node.classObject();
+  const Property* const property = c.property(s.text);
+  if (!property) {
+    std::vector<std::string> names;
+    for (const Property* p : c.properties()) names.push_back(p->name);
+    throw Error(fmt::format("class {} has no property '{}'.{}", c.name(), s.text, didYouMean(s.text, names)));
+  }
+  if (!property->set) throw Error(fmt::format("the property {} of class {} is read only", s.text, c.name()));
+  if (scenes_) scenes_->willChange(node);
+  Args args{arguments};
+  try {
+    writeProperty(*property, node, args);
+  } catch (const std::exception& e) {
+    throw Error(fmt::format("cannot set {} of {}", s.text, node.path()), e);
+  }
+  if (!args.atEnd())
+    throw Error(fmt::format("cannot set {} of {}: expected {}, found {} values", s.text, node.path(), property->type,
+                            arguments.size()));
+}
+
+void Run::beforeCall(const Statement& s, Leaf& node) {
+  if (!scenes_) return;
+  if (s.text == "unlinkLeaf") return scenes_->willRemove(node);
+  if (s.text != "unlinkChildren") return scenes_->willChange(node);
+  if (const Node* const parent = node.asNode())
+    for (const auto& child : parent->children()) scenes_->willRemove(*child);
 }
 
 void Run::flush() {
@@ -252,8 +285,8 @@ std::string Run::textOf(const Operand& o) {
     // eval: the value of that text.
     ++importer_.evals_;
     const auto lookup = [this](std::string_view group, std::string_view member) { return variable(group, member); };
-    std::string result =
-        resultText(evaluate(text, lookup, importer_.rules_.integerDivision), importer_.rules_.evalDigits6);
+    std::string result = resultText(evaluate(text, lookup, importer_.rules_.integerDivision),
+                                    importer_.rules_.evalDigits6 && !program_.ours);
     if (result.size() > kMaxText) throw tooLong();
     return result;
   });
@@ -275,7 +308,7 @@ Value Run::variable(std::string_view group, std::string_view member) const {
 }
 
 void Run::complain(const Statement& s, Level level, const std::string& text) {
-  if (importer_.rules_.strict) throw Error(text);
+  if (strict()) throw Error(text);
   if (s.complained) return;
   s.complained = true;
   importer_.kernel().log().write(level, fmt::format("{}: {}{}", where(program_, s.site), text, importer_.chain()));
