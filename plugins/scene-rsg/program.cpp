@@ -186,7 +186,9 @@ Statement Compiler::call(std::string_view method, Position at, const Position& e
   s.kind = Statement::Kind::call;
   s.site = site;
   s.text = method;
-  s.immediate = std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
+  // Of ours, poses of bodies as well: joints are attached at these poses, in any order of the text.
+  s.immediate = (program_.ours && method == "setLocalPose") ||
+                std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
   addOperands(s, at, end);
   return s;
 }

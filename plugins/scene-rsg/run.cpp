@@ -4,6 +4,7 @@
 
 #include "expression.h"
 #include "spark/error.h"
+#include "spark/plugin_object.h"
 
 namespace spark::rsg {
 
@@ -61,8 +62,8 @@ void Run::runBlock(const Block& block, Cursor cursor) {
 
 void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild) {
   if (!cursor.node) throw Error("the node that this belongs to was removed");
-  Node& node = *cursor.node;
-  const auto enter = [&](Node& inner) {
+  Leaf& node = *cursor.node;
+  const auto enter = [&](Leaf& inner) {
     cursor = {&inner, &nextChild};
     nextChild = 0;
   };
@@ -94,25 +95,33 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
 
 ClassObject& Run::classOf(const Statement& s) const {
   if (s.nodeClass) return *s.nodeClass;
-  ClassObject& nodeClass = importer_.kernel().classOf(s.text);
-  if (!nodeClass.isA(SceneNode::kClassName))
+  // Numbers for an engine need no line in the config, as in models of other languages.
+  Kernel& kernel = importer_.kernel();
+  if (const Plugin* provider =
+          program_.ours && !kernel.findClass(s.text) ? kernel.plugins().providerOf(s.text) : nullptr)
+    kernel.plugins().use(provider->name());
+  ClassObject& nodeClass = kernel.classOf(s.text);
+  // Of ours, what engines read beside a node is no scene node, and cannot have children.
+  if (!nodeClass.isA(SceneNode::kClassName) && !(program_.ours && nodeClass.isOrOffers("IExtension")))
     throw Error(fmt::format("expected a class of scene nodes, found {}, which does not derive from {}",
                             nodeClass.name(), SceneNode::kClassName));
   s.nodeClass = &nodeClass;
   return nodeClass;
 }
 
-Node& Run::makeNode(const Statement& s, Node& parent) {
+Leaf& Run::makeNode(const Statement& s, Leaf& parent) {
   ClassObject& nodeClass = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
     importer_.exhausted(
         fmt::format("too many nodes: one import may make at most {} ({}.maxNodes)", budget.maxNodes, importer_.path()));
-  return *parent.add(nodeClass.create()).asNode();
+  Node* const above = parent.asNode();
+  if (!above) throw Error(fmt::format("{} cannot have children", parent.path()));
+  return above->add(nodeClass.create());
 }
 
 Node& Run::nextNode(Cursor& cursor) {
-  const auto& children = cursor.node->children();
+  const auto& children = cursor.node->asNode()->children();
   const std::size_t i = (*cursor.nextChild)++;
   if (i >= children.size())
     throw Error(
@@ -121,11 +130,12 @@ Node& Run::nextNode(Cursor& cursor) {
   throw Error(fmt::format("expected a scene node, found {}", children[i]->path()));
 }
 
-Node& Run::select(const Statement& s, Node& parent) {
-  Leaf* found = parent.child(s.text);
+Node& Run::select(const Statement& s, Leaf& parent) {
+  const Node* const above = parent.asNode();
+  Leaf* found = above ? above->child(s.text) : nullptr;
   if (found && found->as<SceneNode>()) return *found->asNode();
   std::vector<std::string> names;
-  for (const auto& child : parent.children()) names.push_back(child->name());
+  for (std::size_t i = 0; above && i < above->children().size(); ++i) names.push_back(above->children()[i]->name());
   throw Error(fmt::format("there is no scene node '{}' in {}.{}", s.text, parent.path(), didYouMean(s.text, names)));
 }
 
@@ -151,7 +161,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
   throw Error(fmt::format("no case matches '{}', there are {}", value, labels));
 }
 
-void Run::call(const Statement& s, Node& node) {
+void Run::call(const Statement& s, Leaf& node) {
   ++importer_.calls_;
   List computed;
   if (!s.constant) {
@@ -167,11 +177,12 @@ void Run::call(const Statement& s, Node& node) {
     invoke(s, node, arguments);
 }
 
-void Run::import(const Statement& s, Node& node, const List& arguments) {
-  if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
+void Run::import(const Statement& s, Leaf& node, const List& arguments) {
+  Node* const root = node.asNode();
+  if (!root || !methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
   const std::string& file = arguments.front().toString();
   try {
-    importer_.kernel().root().require<ISceneServer>().importScene(file, node,
+    importer_.kernel().root().require<ISceneServer>().importScene(file, *root,
                                                                   List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
     if (strict() || importer_.budget_.exhausted)
@@ -204,6 +215,9 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   beforeCall(s, node);
   if (strict() || !importer_.rules_.looseArguments) {
     callMethod(node, s.text, arguments);
+    // A transform that has nothing below it yet moves nothing: what is made there later has its pose from the start.
+    const auto transform = program_.ours && s.immediate ? node.as<Transform>() : nullptr;
+    if (transform && transform->children().empty()) transform->setMovedSincePlace(false);
     return;
   }
   const ClassObject& called = *node.classObject();  // the call may remove the node

@@ -33,7 +33,7 @@ class Run {
  private:
   /// The current node of a list.
   struct Cursor {
-    Ref<Node> node;
+    Ref<Leaf> node;
     std::size_t* nextChild;  ///< delta scenes: index of the child that the next nd selects
   };
   /// A call that is made at the end of the file.
@@ -46,14 +46,14 @@ class Run {
   void runBlock(const Block& block, Cursor cursor);
   /// Runs a statement. When it enters a node, `cursor` refers to that node and to `nextChild`.
   void runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild);
-  Node& makeNode(const Statement& s, Node& parent);
+  Leaf& makeNode(const Statement& s, Leaf& parent);
   ClassObject& classOf(const Statement& s) const;
   Node& nextNode(Cursor& cursor);
-  Node& select(const Statement& s, Node& parent);
+  Node& select(const Statement& s, Leaf& parent);
   void choose(const Statement& s, const Cursor& cursor);
   /// Evaluates the arguments of a call, and makes or queues it.
-  void call(const Statement& s, Node& node);
-  void import(const Statement& s, Node& node, const List& arguments);
+  void call(const Statement& s, Leaf& node);
+  void import(const Statement& s, Leaf& node, const List& arguments);
   /// Makes a call, or sets a property.
   void invoke(const Statement& s, Leaf& node, const List& arguments);
   void set(const Statement& s, Leaf& node, const List& arguments);
