@@ -85,7 +85,7 @@ std::vector<SceneCall> Joint::sceneCalls() const {
   if (!world()) return {};
   expectAsMade();
   std::vector<SceneCall> calls;
-  if (attached_) {
+  if (bodies_[0] || bodies_[1]) {
     const auto path = [&](const Ref<RigidBody>& b) { return b ? relativePath(*this, *b) : std::string(); };
     calls.push_back({"attach", {path(bodies_[0]), path(bodies_[1])}});
     // In the joint's frame, a matrix in single precision, whose inverse is not its transpose.

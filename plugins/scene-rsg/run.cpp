@@ -214,9 +214,9 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
   beforeCall(s, node);
   if (strict() || !importer_.rules_.looseArguments) {
-    callMethod(node, s.text, arguments);
+    const Ref<Transform> transform(program_.ours && s.immediate ? node.as<Transform>() : nullptr);
+    callMethod(node, s.text, arguments);  // may remove the node
     // A transform that has nothing below it yet moves nothing: what is made there later has its pose from the start.
-    const auto transform = program_.ours && s.immediate ? node.as<Transform>() : nullptr;
     if (transform && transform->children().empty()) transform->setMovedSincePlace(false);
     return;
   }

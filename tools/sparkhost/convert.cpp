@@ -46,7 +46,10 @@ class Scene {
       setProperty(folder, "path", file.parent_path().string());
       resource = file.filename().string();
     }
+    const auto errors = kernel().log().errors();
     kernel().root().require<ISceneServer>().importScene(resource, model(), {});
+    if (kernel().log().errors() != errors)
+      throw Error(fmt::format("'{}' was imported in part only: see the errors in the log above", name));
     if (Leaf* const physics = kernel().root().find("/sys/server/physics")) callMethod(*physics, "settle", {});
   }
   std::vector<std::pair<std::string, Value>> worldValues() {

@@ -115,6 +115,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
                  "Write a scene file of any language as one of Spark's own, (RSG 0 2), and end; --config: one "
                  "that builds what the file needs, such as variables (default convert.lua)")
       ->type_name("IN OUT.rsg")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw)
       ->expected(2)
       ->excludes("--check")
       ->excludes(from);
