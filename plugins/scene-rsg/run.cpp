@@ -16,6 +16,13 @@ class Located : public Error {
 };
 
 Error tooLong() { return Error(fmt::format("expected a text of at most {} bytes, found a longer one", kMaxText)); }
+/// Uses the plugins that provide a class and its bases, as models of other languages do.
+void provide(Kernel& kernel, std::string_view className) {
+  if (!kernel.findClass(className))
+    if (const Plugin* const provider = kernel.plugins().providerOf(className)) kernel.plugins().use(provider->name());
+  if (const ClassObject* const known = kernel.findClass(className); known && !known->baseName().empty())
+    provide(kernel, known->baseName());
+}
 }  // namespace
 
 template <class F>
@@ -95,11 +102,8 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
 
 ClassObject& Run::classOf(const Statement& s) const {
   if (s.nodeClass) return *s.nodeClass;
-  // Numbers for an engine need no line in the config, as in models of other languages.
   Kernel& kernel = importer_.kernel();
-  if (const Plugin* provider =
-          program_.ours && !kernel.findClass(s.text) ? kernel.plugins().providerOf(s.text) : nullptr)
-    kernel.plugins().use(provider->name());
+  if (program_.ours) provide(kernel, s.text);
   ClassObject& nodeClass = kernel.classOf(s.text);
   // Of ours, what engines read beside a node is no scene node, and cannot have children.
   if (!nodeClass.isA(SceneNode::kClassName) && !(program_.ours && nodeClass.isOrOffers("IExtension")))

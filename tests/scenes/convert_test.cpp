@@ -168,3 +168,20 @@ TEST_CASE("what the language cannot express is an error with node and property")
                                      Catch::Contains("/usr/scene/place/plain cannot be written to a scene file: its "
                                                      "class Node is none of scene nodes"));
 }
+
+TEST_CASE("a file of version 0.2 uses the plugins of its classes and their bases") {
+  PhysicsHost h;
+  TemporaryFolder folder;
+  for (const char* plugin : {"files", "scene-rsg"}) h.kernel.plugins().use(plugin);
+  h.kernel.create("FileServer", "/sys/server/file");
+  setProperty(h.kernel.create("DirectoryFileSystem", "/sys/server/file/folder"), "path", folder.path().string());
+  h.kernel.create("RsgImporter", "/sys/server/scene/rsg");
+  const std::string body =
+      "((nd Transform (nd RigidBody)(nd HingeJoint (attach ../RigidBody)(setAxis 0)(nd ActuatorEffector))))";
+  folder.write("old.rsg", "(RSG 0 1)" + body);
+  folder.write("new.rsg", "(RSG 0 2)" + body);
+  auto& server = h.kernel.root().require<ISceneServer>();
+  CHECK_THROWS_WITH(server.importScene("old.rsg", h.scene, {}),
+                    Catch::Contains("there is no class 'ActuatorEffector'"));
+  CHECK_NOTHROW(server.importScene("new.rsg", h.scene, {}));
+}
