@@ -53,7 +53,7 @@ void SceneWriter::describe(Description<SceneWriter>& d) {
   d.method("text", &SceneWriter::text).parameters({"path"}).doc("A scene file with all nodes below that path.");
 }
 
-std::string SceneWriter::text(std::string path) {
+std::string SceneWriter::text(const std::string& path) {
   const Node& root = require<Node>(path);
   std::string out = "(RSG 0 2)\n(\n";
   for (const auto& child : root.children()) writeNode(*child, 1, out);

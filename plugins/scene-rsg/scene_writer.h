@@ -17,7 +17,7 @@ class SceneWriter : public Leaf {
   static void describe(Description<SceneWriter>& d);
   /// The file with all that is below the node at `path`. Throws Error, with node and property, for what the language
   /// cannot express.
-  std::string text(std::string path);
+  std::string text(const std::string& path);
 
  private:
   void writeNode(const Leaf& node, int depth, std::string& out);

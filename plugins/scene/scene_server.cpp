@@ -87,7 +87,7 @@ SceneServer::Known SceneServer::importerFor(const std::string& file) {
     return known->second;
   const std::string text = files.read(file);
   const Found<ISceneImporter> importer = recognise(file, text);
-  const Known known{stamp, importer, importer->transactional(text), importer->keepsTransforms(text)};
+  Known known{stamp, importer, importer->transactional(text), importer->keepsTransforms(text)};
   known_.insert_or_assign(file, known);
   return known;
 }
