@@ -176,7 +176,7 @@ void makePieces(World& w) {
     include "house.lua"
     include "materials.lua"
     files() scene() materials() physics() simulation()
-    for _, name in ipairs { "gamecontrol", "monitor", "sensors", "soccer" } do plugin(name) end
+    for _, name in ipairs { "gamecontrol", "monitor", "sensors", "soccer", "sounds" } do plugin(name) end
   )lua");
   call(make(w, "PlaneCollider", "ground"), "setParams", {0.0, 0.0, 1.0, 0.0});
   make(w, "ContactJointHandler", "ground/solid");
@@ -194,6 +194,7 @@ void makePieces(World& w) {
   makeBox(w, "toucher", {4, 4, 0.5});
   make(w, "PerceptorHandler", "toucher/shape/feels"), make(w, "TouchPerceptor", "toucher/sensor");
   makeBox(w, "stone", {2.1, 4, 1});
+  make(w, "SoundHandler", "stone/shape/sound");
   make(w, "FieldFlag", "flag"), make(w, "SingleMatNode", "mark");
   w.kernel.create("StatusVariables", "/sys/variables/Status");
 }
