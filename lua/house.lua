@@ -30,14 +30,20 @@ function files()
   return server
 end
 
---- Scene server with the importers of RSG, MJCF, URDF and Webots, and an empty active scene at /usr/scene.
+--- Scene server with the importers of RSG, MJCF, URDF and Webots, and an empty active scene at /usr/scene. `--set
+--- transactionalImport=true` makes all imports that fail leave the scene unchanged.
 function scene()
+  local transactional = option{ name = "transactionalImport", default = "byLanguage",
+                                choices = { "byLanguage", "true", "false" },
+                                doc = "Imports that fail leave the scene unchanged; by language: all but those of " ..
+                                      "scene files of the installed base." }
   plugin "scene"
   plugin "scene-rsg"
   plugin "scene-mjcf"
   plugin "scene-urdf"
   plugin "scene-webots"
   local server = new("SceneServer", "/sys/server/scene")
+  server.transactionalImport = transactional
   new("RsgImporter", "/sys/server/scene/rsg")
   new("MjcfImporter", "/sys/server/scene/mjcf")
   new("UrdfImporter", "/sys/server/scene/urdf")

@@ -17,7 +17,7 @@ class SceneNode;
 /// The scene server, at /sys/server/scene. The active scene is /usr/scene unless set otherwise.
 class ISceneServer {
  public:
-  SPARK_INTERFACE(ISceneServer, 3);
+  SPARK_INTERFACE(ISceneServer, 4);
   static constexpr const char* kPath = "/sys/server/scene";
   /// The path of the active scene by default, and without a scene server.
   static constexpr const char* kDefaultScene = "/usr/scene";
@@ -29,8 +29,15 @@ class ISceneServer {
   /// Root of the active scene. Throws Error when there is none.
   virtual Node& scene() = 0;
   /// Imports a file below `root` with the first importer that recognises its format. Throws Error with
-  /// file:line:column; the importer decides which nodes stay in the tree then.
+  /// file:line:column; the tree then is as before, unless the language keeps what was made before the error
+  /// (ISceneImporter::transactional).
   virtual void importScene(std::string_view file, Node& root, const List& arguments) = 0;
+  /// Importers call it before they change the name, properties or pose of a node that may be older than the import: if
+  /// the import is undone, the node gets them back.
+  virtual void willChange(Leaf&) {}
+  /// Importers call it before they remove a node that may be older than the import. Throws Error if it is and the
+  /// import can be undone: what is removed cannot be brought back.
+  virtual void willRemove(Leaf&) {}
   /// A file that was imported, and the objects that came with it.
   struct Import {
     std::string file;
@@ -54,15 +61,20 @@ class ISceneServer {
 /// An importer of a scene format. A child of the scene server.
 class ISceneImporter {
  public:
-  SPARK_INTERFACE(ISceneImporter, 2);
+  SPARK_INTERFACE(ISceneImporter, 3);
   virtual ~ISceneImporter() = default;
-  /// True when `text` is in the format of this importer, judged by its beginning.
-  virtual bool recognises(std::string_view text) const = 0;
+  /// True when `text` is in the format of this importer, judged by its beginning, or by the name `file` of the resource
+  /// where the beginning is in no known format. The scene server passes "" as `file` until every importer has seen the
+  /// text, so that a name never outweighs what the text says.
+  virtual bool recognises(std::string_view text, std::string_view file) const = 0;
   /// Creates the nodes of the file below `root`. `arguments` are those of the file's template. Throws Error.
   virtual void import(std::string_view file, Node& root, const List& arguments) = 0;
-  /// True: all transforms that it creates are kept. False: the scene server removes those that are empty or contain
-  /// only transforms, as the installed base does.
-  virtual bool keepsTransforms() const { return false; }
+  /// True: when the import of a file with this text fails, the scene server removes all nodes that it created. False:
+  /// they stay, as in the installed base. SceneServer::transactionalImport overrides it.
+  virtual bool transactional(std::string_view /*text*/) const { return true; }
+  /// True: all transforms that a file with this text creates are kept. False: the scene server removes those that are
+  /// empty or contain only transforms, as the installed base does.
+  virtual bool keepsTransforms(std::string_view /*text*/) const { return false; }
 };
 
 /// A named group of variables, which scene files read as `Name.variable`. A child of /sys/variables.
@@ -162,6 +174,8 @@ class Transform : public SceneNode {
   }
   /// True when the transform was moved by hand since the last update.
   bool movedSincePlace() const { return moved_; }
+  /// Restores movedSincePlace() after a movement by hand was taken back.
+  void setMovedSincePlace(bool moved) { moved_ = moved; }
   /// True when the local matrix changed, by hand or by a body, since the last update.
   bool dirty() const { return dirty_; }
 

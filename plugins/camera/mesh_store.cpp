@@ -36,9 +36,8 @@ const T* MeshStore::get(const std::string& resource, std::map<std::string, Known
 }
 
 const Mesh* MeshStore::mesh(const std::string& resource) {
-  if (!resource.ends_with(".obj")) return nullptr;
   return get(resource, meshes_, allMeshes_, [&](const std::string& bytes) {
-    return readObj(resource, bytes, [this](const std::string& name) { return file(name); });
+    return meshes::readVisualMesh(resource, bytes, [this](const std::string& name) { return file(name); });
   });
 }
 

@@ -9,13 +9,15 @@
 #include <string>
 
 #include "image.h"
-#include "mesh.h"
+#include "meshes/visual_mesh.h"
 
 namespace spark {
 class Kernel;
 }
 
 namespace spark::camera {
+
+using Mesh = meshes::VisualMesh;
 
 /// Reads each file once, and again when it changed. What it returns lives as long as the store. A file that cannot be
 /// read is logged once.

@@ -142,17 +142,17 @@ const Renderer::Vertices& Renderer::vertices(const MeshPart& mesh) {
   gl_.GenVertexArrays(1, &v.array);
   gl_.BindVertexArray(v.array);
   gl_.BindBuffer(GL_ARRAY_BUFFER, buffer);
-  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(Vertex)), mesh.vertices.data(),
-                 GL_STATIC_DRAW);
+  gl_.BufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(mesh.vertices.size() * sizeof(meshes::Vertex)),
+                 mesh.vertices.data(), GL_STATIC_DRAW);
   const struct {
     GLint count;
     std::size_t at;
-  } fields[] = {{3, offsetof(Vertex, position)},
-                {3, offsetof(Vertex, normal)},
-                {2, offsetof(Vertex, place)},
-                {3, offsetof(Vertex, faceNormal)}};
+  } fields[] = {{3, offsetof(meshes::Vertex, position)},
+                {3, offsetof(meshes::Vertex, normal)},
+                {2, offsetof(meshes::Vertex, place)},
+                {3, offsetof(meshes::Vertex, faceNormal)}};
   for (GLuint i = 0; i < 4; ++i) {
-    gl_.VertexAttribPointer(i, fields[i].count, GL_FLOAT, GL_FALSE, sizeof(Vertex), offset(fields[i].at));
+    gl_.VertexAttribPointer(i, fields[i].count, GL_FLOAT, GL_FALSE, sizeof(meshes::Vertex), offset(fields[i].at));
     gl_.EnableVertexAttribArray(i);
   }
   v.count = static_cast<GLsizei>(mesh.vertices.size());

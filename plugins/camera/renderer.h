@@ -14,9 +14,11 @@
 #include "api/camera.h"
 #include "gl_context.h"
 #include "image.h"
-#include "mesh.h"
+#include "meshes/visual_mesh.h"
 
 namespace spark::camera {
+
+using meshes::MeshMaterial, meshes::MeshPart;
 
 /// What a batch consists of. Sizes are those of Instance::size: half the box around it, and a radius.
 enum class Shape : std::uint8_t {

@@ -93,6 +93,17 @@ std::uint64_t FileServer::stamp(std::string_view resource) {
   return stamp == 0 ? 0 : std::max<std::uint64_t>(1, stamp ^ (number << 56));
 }
 
+std::optional<std::filesystem::path> FileServer::hostFile(std::string_view resource) {
+  const std::string name = files::normalName(resource);
+  std::optional<std::filesystem::path> path;
+  forEach([&](IFileSystem& system) {
+    if (system.stamp(name) == 0) return false;
+    path = system.hostFile(name);
+    return true;
+  });
+  return path;
+}
+
 void FileServer::notFound(const std::string& name) const {
   std::string places;
   forEach([&](IFileSystem& system) {

@@ -28,6 +28,7 @@ class FileServer : public Node, public IFileServer {
   std::string read(std::string_view resource) override;
   bool exists(std::string_view resource) override;
   std::uint64_t stamp(std::string_view resource) override;
+  std::optional<std::filesystem::path> hostFile(std::string_view resource) override;
 
  private:
   /// Calls `visit` for the file systems, in order, until it returns true.
@@ -47,6 +48,7 @@ class DirectoryFileSystem : public Leaf, public IFileSystem {
 
   std::optional<std::string> read(const std::string& resource) override;
   std::uint64_t stamp(const std::string& resource) override;
+  std::optional<std::filesystem::path> hostFile(const std::string& resource) override { return locate(resource); }
   std::string where() const override;
 
  private:

@@ -1,25 +1,16 @@
 #include "mesh_file.h"
 
-#include <assimp/BaseImporter.h>
-#include <assimp/config.h>
-#include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
 #include <assimp/scene.h>
+#include <tiny_obj_loader.h>
 
 #include <array>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
-#include <assimp/Importer.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <span>
 #include <sstream>
 
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
-
+#include "assimp_file.h"
 #include "spark/error.h"
 
 namespace spark::meshes {
@@ -27,28 +18,6 @@ namespace spark::meshes {
 using engine::Mesh;
 
 namespace {
-/// Files that a mesh file names, such as materials, are not opened: they would be any file of this machine.
-struct NoFiles : Assimp::IOSystem {
-  bool Exists(const char*) const override { return false; }
-  char getOsSeparator() const override { return '/'; }
-  Assimp::IOStream* Open(const char*, const char*) override { return nullptr; }
-  void Close(Assimp::IOStream*) override {}
-};
-
-/// Leaves the readers of one format. Otherwise assimp, when they do not take a file, looks for another one by words in
-/// it, and some of the others crash on damaged files. Throws Error if there is none.
-void keepReadersOf(const std::string& format, Assimp::Importer& importer) {
-  for (std::size_t i = importer.GetImporterCount(); i-- > 0;) {
-    const std::string formats = fmt::format(" {} ", importer.GetImporterInfo(i)->mFileExtensions);
-    if (!format.empty() && formats.find(' ' + format + ' ') != std::string::npos) continue;
-    const std::unique_ptr<Assimp::BaseImporter> other(importer.GetImporter(i));
-    importer.UnregisterLoader(other.get());
-  }
-  if (importer.GetImporterCount() == 0)
-    throw Error(fmt::format("expected a mesh file of a known kind, such as .obj, .stl, .dae, .glb or .msh, found '.{}'",
-                            format));
-}
-
 /// MuJoCo's format: the numbers of vertices, normals, texture coordinates and faces, then these arrays, in the byte
 /// order of x86 (MuJoCo's documentation, "MSH file").
 Mesh readMsh(const std::string& bytes) {
@@ -146,23 +115,13 @@ Mesh readObj(const std::string& bytes) {
 }  // namespace
 
 Mesh readMesh(const std::string& name, const std::string& bytes) {
-  const std::size_t dot = name.rfind('.');
-  std::string format = dot == std::string::npos ? "" : name.substr(dot + 1);
-  for (char& c : format) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c;
+  const std::string format = formatOf(name);
   if (format == "msh") return readMsh(bytes);
   if (format == "obj") return readObj(bytes);
   Mesh s;
-  Assimp::Importer importer;
-  importer.SetIOHandler(new NoFiles);  // which owns it
-  keepReadersOf(format, importer);
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  const aiScene* const scene = importer.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
-      format.c_str());
-  if (!scene) throw Error(importer.GetErrorString());
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene->mMeshes[m];
+  const AssimpFile file(format, bytes);
+  for (unsigned m = 0; m < file.scene().mNumMeshes; ++m) {
+    const aiMesh& mesh = *file.scene().mMeshes[m];
     if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
     const auto first = static_cast<std::uint32_t>(s.vertices.size() / 3);
     for (unsigned v = 0; v < mesh.mNumVertices; ++v)

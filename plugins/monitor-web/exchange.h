@@ -11,9 +11,11 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "file_question.h"
 #include "mailbox.h"
 #include "stream/snapshot.h"
 
@@ -28,11 +30,13 @@ struct SimulationRequest {
     drawings,    ///< subscribes the viewer to drawings, or unsubscribes it if `on` is false
     disconnect,  ///< the viewer disconnected: drop what it requested, watches and subscribed to
     status,      ///< the status report for all viewers
+    file,        ///< finds the resource `text` and answers `file`
   } kind = Kind::control;
   std::uint64_t viewer = 0;  ///< Viewer::id()
   std::int64_t id = 0;       ///< chosen by the viewer; repeated in the reply
   std::string text;
   bool referee = false, on = true;
+  std::shared_ptr<FileQuestion> file{};
 };
 
 /// A message from the simulation thread to viewers.

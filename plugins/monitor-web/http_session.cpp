@@ -3,6 +3,7 @@
 #include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <boost/beast/http/read.hpp>
+#include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
 #include <chrono>
@@ -67,12 +68,29 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     answering = true;
     HttpReply reply = state_.site.answer(requestIn(*parser_));
     if (reply.stream) return becomeViewer();
+    if (reply.isAsset) return loadAsset(std::move(reply));
     if (!reply.isStatus) return answer(reply);
     state_.hub.requestStatus(Clock::now(), [self = shared_from_this(), reply](const std::string& status) mutable {
       reply.text = status;
       self->answer(reply);
     });
     state_.update();
+  }
+
+  /// Sends the asset of path `reply.text` when it is loaded. One that cannot be shown is no error: it has no content.
+  void loadAsset(HttpReply reply) {
+    const std::string path = std::exchange(reply.text, {});
+    if (state_.loadAsset(path, [self = shared_from_this(), reply](const LoadedAsset& asset) mutable {
+          reply.status = asset.bytes ? 200 : 204;
+          reply.type = asset.type;
+          reply.immutable = asset.bytes != nullptr;
+          reply.shared = asset.bytes;
+          self->answer(reply);
+        }))
+      return;
+    reply.status = 404;
+    reply.text = "There is no such mesh or texture.\n";
+    answer(reply);
   }
 
   void becomeViewer() {
@@ -106,10 +124,16 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
     keepAlive_ = !reply.close && parser_->get().keep_alive() && ++requests_ < kMaxRequests;
     const bool bodyless = parser_->get().method() == http::verb::head;
     if (!reply.file.empty()) return answerFile(reply, bodyless);
-    if (bodyless) {
+    if (bodyless || reply.status == 204) {
       auto out = responseHead<http::empty_body>(reply);
-      out.content_length(reply.text.size());
+      if (reply.status != 204) out.content_length(reply.shared ? reply.shared->size() : reply.text.size());
       return write(std::move(out));
+    }
+    if (reply.shared) {
+      auto out = responseHead<http::span_body<const char>>(reply);
+      out.body() = {reply.shared->data(), reply.shared->size()};
+      out.prepare_payload();
+      return write(std::move(out), reply.shared);
     }
     auto out = responseHead<http::string_body>(reply);
     out.body() = reply.text;
@@ -139,14 +163,16 @@ class HttpSession : public Connection, public std::enable_shared_from_this<HttpS
   /// A response and the state of its transmission.
   template <class Body>
   struct Outgoing {
-    explicit Outgoing(http::response<Body> r) : response(std::move(r)), serializer(response) {}
+    Outgoing(http::response<Body> r, std::shared_ptr<const std::string> b)
+        : bytes(std::move(b)), response(std::move(r)), serializer(response) {}
+    std::shared_ptr<const std::string> bytes;  ///< what `response` refers to, if anything
     http::response<Body> response;
     http::response_serializer<Body> serializer;
   };
 
   template <class Body>
-  void write(http::response<Body> response) {
-    writeSome(std::make_shared<Outgoing<Body>>(std::move(response)));
+  void write(http::response<Body> response, std::shared_ptr<const std::string> bytes = {}) {
+    writeSome(std::make_shared<Outgoing<Body>>(std::move(response), std::move(bytes)));
   }
   /// Writes part by part, each with its own timeout.
   template <class Body>

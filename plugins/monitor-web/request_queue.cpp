@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "api/files.h"
 #include "api/inputs.h"
 #include "api/monitor.h"
 #include "drawings_message.h"
+#include "spark/error.h"
 #include "stream/messages.h"
 
 namespace spark::web {
@@ -50,7 +52,10 @@ void RequestQueue::process(const Settings& settings, int spectators) {
   while (!requests_.empty() && budget_ > 0) {
     const SimulationRequest request = std::move(requests_.front());
     requests_.pop_front();
-    charge([&] { send(SimulationReply::Kind::reply, request.viewer, executeControl(request, settings)); });
+    charge([&] {
+      if (request.file) return request.file->answer(findFile(request.text));
+      send(SimulationReply::Kind::reply, request.viewer, executeControl(request, settings));
+    });
   }
   pollWatches(now);
   if (!subscribers_.empty() && now >= drawingsDue_) sendDrawings(now);
@@ -62,6 +67,7 @@ void RequestQueue::receive(SimulationRequest request, int spectators) {
   const auto ofViewer = [&](const auto& x) { return x.viewer == request.viewer; };
   switch (request.kind) {
     case Kind::control:
+    case Kind::file:
       return requests_.push_back(std::move(request));
     case Kind::command:
       return send(SimulationReply::Kind::reply, request.viewer, executeCommand(request));
@@ -87,6 +93,17 @@ void RequestQueue::send(SimulationReply::Kind kind, std::uint64_t viewer, std::s
 }
 
 // ---- requests ----
+
+FoundFile RequestQueue::findFile(const std::string& resource) const {
+  auto* files = kernel_.root().find<IFileServer>();
+  try {
+    if (!files || !files->exists(resource)) return {};
+    if (auto path = files->hostFile(resource)) return {std::move(path), {}};
+    return {{}, files->read(resource)};
+  } catch (const Error&) {
+    return {};  // the name is none of a resource, or the file may not be read
+  }
+}
 
 std::string RequestQueue::executeCommand(const SimulationRequest& request) {
   constexpr std::string_view kWho = "the web's referee";

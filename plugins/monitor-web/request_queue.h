@@ -17,7 +17,8 @@ namespace spark::web {
 
 /// The budget grows with wall time, by `Settings::share` of it. Each request, each poll of a watched property and each
 /// drawings message is charged with the time that it took; while the budget is not positive, the next one waits. The
-/// referee's commands and the status report are cheap and not charged.
+/// referee's commands and the status report are cheap and not charged. Files are only looked for, unless they are in an
+/// archive: another thread reads them.
 class RequestQueue {
  public:
   struct Settings {
@@ -46,6 +47,7 @@ class RequestQueue {
   };
   void receive(SimulationRequest request, int spectators);
   std::string executeControl(const SimulationRequest& request, const Settings& settings);
+  FoundFile findFile(const std::string& resource) const;
   std::string executeCommand(const SimulationRequest& request);
   void startWatch(const SimulationRequest& request, control::Watch watch);
   void endWatch(std::uint64_t viewer, std::int64_t id);
@@ -62,7 +64,7 @@ class RequestQueue {
   Kernel& kernel_;
   Exchange& exchange_;
   StatusReport report_;
-  std::deque<SimulationRequest> requests_;  ///< control requests that wait for budget
+  std::deque<SimulationRequest> requests_;  ///< control requests and files that wait for budget
   std::vector<std::unique_ptr<WatchedProperty>> watches_;
   std::size_t nextWatch_ = 0;  ///< index of the watch to poll next
   std::vector<DrawingSubscriber> subscribers_;

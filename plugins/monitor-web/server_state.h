@@ -8,6 +8,7 @@
 #include <list>
 #include <memory>
 
+#include "asset_loader.h"
 #include "service.h"
 
 namespace spark::web {
@@ -35,6 +36,7 @@ struct ServerState {
   std::list<Connection*> connections;  ///< HTTP only, ordered by the time of the last request, oldest first
   int viewers = 0;                     ///< open viewer connections, those in their handshake included
   std::uint64_t lastViewerId = 0;
+  std::function<bool(std::string_view, AssetLoader::Callback)> loadAsset;  ///< as AssetLoader::request()
   std::function<void()> update;  ///< runs the hub's due work and sets its timer; call it after a hub call
 };
 

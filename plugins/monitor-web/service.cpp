@@ -7,6 +7,7 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/posix/stream_descriptor.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <csignal>
 #include <thread>
@@ -46,8 +47,19 @@ ServiceSettings withDescriptorLimit(ServiceSettings s) {
 
 struct Service::Impl {
   Impl(const ServiceSettings& s, Exchange& e, Log& log)
-      : exchange(e), state{withDescriptorLimit(s), log, Site(s.site), ViewerHub(e, log, s.hub), {}, 0, 0,
-                           [this] { update(); }} {
+      : exchange(e),
+        state{withDescriptorLimit(s),
+              log,
+              Site(s.site),
+              ViewerHub(e, log, s.hub),
+              {},
+              0,
+              0,
+              [this](std::string_view path, AssetLoader::Callback callback) {
+                return assets.request(path, std::move(callback));
+              },
+              [this] { update(); }},
+        assets(state.hub.assets(), e, log, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {
     open(s);
     const int copy = dup(exchange.wakeupFd());  // `wakeup` closes its descriptor
     if (copy < 0) throw Error("cannot open the web server: too many files are open");
@@ -61,6 +73,7 @@ struct Service::Impl {
   ~Impl() {
     io.stop();
     thread.join();
+    assets.stop();
     state.hub.clear();  // the remaining sessions are owned by handlers in io, which is destroyed before `state`
   }
 
@@ -180,6 +193,7 @@ struct Service::Impl {
   asio::steady_timer timer{io}, retryTimer{io};  // of the hub; of accept()
   Clock::time_point timerAt{};                   // when `timer` expires; {}: it is not set
   std::atomic<int> viewers{0}, connections{0};   // for other threads
+  AssetLoader assets;
   std::thread thread;
 };
 

@@ -157,6 +157,11 @@ HttpReply Site::page(std::string_view path) const {
     out.isStatus = true;
     return out;
   }
+  if (path.starts_with("/mesh/") || path.starts_with("/texture/")) {
+    out.text = path.substr(1);
+    out.isAsset = true;
+    return out;
+  }
   if (path.starts_with("/logs/")) return logFile(path.substr(6));
   if (hasViewer()) return fileIn(settings_.viewer, path == "/" ? "index.html" : path.substr(1));
   if (path == "/") {

@@ -18,14 +18,16 @@ struct HttpRequest {
   bool hasBody = false;
 };
 
-/// A reply. Its body is `file` if that is not empty, otherwise `text`.
+/// A reply. Its body is `file` if that is not empty, otherwise `shared` or `text`.
 struct HttpReply {
   unsigned status = 200;
   std::string type = "text/plain; charset=utf-8";
   std::string text;
+  std::shared_ptr<const std::string> shared{};  ///< the body instead of `text`, if set
   std::filesystem::path file;
   bool immutable = false;  ///< browsers may cache it for ever: the file's name is a hash of its content
   bool stream = false;     ///< no reply: the connection becomes a viewer
+  bool isAsset = false;    ///< the body is to be the asset of path `text`, which AssetLoader::request() delivers
   bool isStatus = false;   ///< the body is to be the status message, which ViewerHub::requestStatus() delivers
   bool close = false;      ///< close the connection after it
 };

@@ -256,7 +256,7 @@ void ViewerHub::takeSnapshot(Clock::time_point now) {
 
 void ViewerHub::takeScene(Clock::time_point now) {
   shape_ = snapshot_.shape;
-  scene_ = std::make_shared<const std::string>(sceneMessage(snapshot_, ++shapeNumber_));
+  scene_ = std::make_shared<const std::string>(sceneMessage(snapshot_, ++shapeNumber_, assets_.links()));
   sceneAt_ = now;
   if (keepsHistory()) history_->takeScene(shapeNumber_, *scene_);
   snapshot_.scene.reset();

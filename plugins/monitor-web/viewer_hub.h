@@ -14,6 +14,7 @@
 #include <optional>
 #include <vector>
 
+#include "asset_list.h"
 #include "history.h"
 #include "stream/messages.h"
 #include "stream/stream_encoder.h"
@@ -61,6 +62,8 @@ class ViewerHub {
   /// again.
   Clock::time_point tick(Clock::time_point now);
 
+  /// The meshes and textures of all scenes so far.
+  AssetList& assets() { return assets_; }
   /// Number of viewers.
   std::size_t size() const { return viewers_.size(); }
   /// Calls `callback` once with the status message, `{"type":"status",...}`: at once if one of the last second is
@@ -112,6 +115,7 @@ class ViewerHub {
   Exchange& exchange_;
   Log& log_;
   const ViewerHubSettings settings_;
+  AssetList assets_;
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers_;  ///< by id, which is the order of arrival
   std::vector<Lane> lanes_;                                   ///< lanes without viewers stay for reuse
 

@@ -90,6 +90,7 @@ void MujocoTendon::describe(Description<MujocoTendon>& d) {
   using T = MujocoTendon;
   using N = mujoco::TendonNumbers;
   engine::describeExtension(d, "A tendon of MuJoCo, along joints or along points of bodies.");
+  d.implements<ISceneCalls>();
   d.method("addJoint", &T::addJoint)
       .parameters({"path", "coefficient"})
       .doc("Adds the coordinate of a joint to its length, times a coefficient.");
@@ -127,6 +128,18 @@ void MujocoTendon::describe(Description<MujocoTendon>& d) {
       .doc(fmt::format(fmt::runtime(solref), "dry friction"));
   d.property("frictionSolimp", &T::get<&N::frictionSolimp>, &T::set<&N::frictionSolimp>)
       .doc(fmt::format(fmt::runtime(solimp), "dry friction"));
+}
+
+std::vector<SceneCall> MujocoTendon::sceneCalls() const {
+  std::vector<SceneCall> calls;
+  for (std::size_t i = 0; i < paths_.size(); ++i) {
+    const auto& p = numbers().elements[i].point;
+    if (numbers().spatial != 0)
+      calls.push_back({"addPoint", {paths_[i], p[0], p[1], p[2]}});
+    else
+      calls.push_back({"addJoint", {paths_[i], p[0]}});
+  }
+  return calls;
 }
 
 void MujocoTendon::addJoint(const std::string& path, double coefficient) { add(false, path, {coefficient, 0, 0}); }

@@ -9,6 +9,7 @@
 
 #include "api/extension.h"
 #include "api/math.h"
+#include "api/scene_calls.h"
 
 namespace spark {
 
@@ -108,10 +109,11 @@ class MujocoEquality : public MujocoConstraint<mujoco::EqualityNumbers> {
 };
 
 /// A tendon along joints or along points of bodies.
-class MujocoTendon : public MujocoConstraint<mujoco::TendonNumbers> {
+class MujocoTendon : public MujocoConstraint<mujoco::TendonNumbers>, public ISceneCalls {
   SPARK_CLASS(MujocoTendon, Leaf)
  public:
   static void describe(Description<MujocoTendon>& d);
+  std::vector<SceneCall> sceneCalls() const override;
 
  protected:
   void onLink() override;

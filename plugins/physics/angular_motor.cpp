@@ -76,6 +76,18 @@ bool AngularMotor::disabled() const {
   return tooHot() || (battery && battery->empty());
 }
 
+std::vector<SceneCall> AngularMotor::sceneCalls() const {
+  std::vector<SceneCall> calls{{"setNumAxes", {axes_}}};
+  if (euler_) calls.push_back({"setEulerMode", {}});
+  for (SceneCall& call : Joint::sceneCalls()) calls.push_back(std::move(call));
+  for (int axis = 0; axis < axes_; ++axis) {
+    const Vec3 v = axisNow(axis);
+    calls.push_back({"setMotorAxis", {axis, frames_[axis], v.x(), v.y(), v.z()}});
+    if (!euler_ && angle(axis) != 0) calls.push_back({"setAxisAngle", {axis, angleDeg(axis)}});
+  }
+  return calls;
+}
+
 void AngularMotor::prepare(const Event&) {
   if (!modelled()) return;
   const Battery* battery = battery_.get();

@@ -25,6 +25,8 @@ class AngularMotor : public Joint, public IMotor {
   double temperature() const override { return temperature_; }
   double current() const override { return current_; }
   bool disabled() const override;
+  std::vector<SceneCall> sceneCalls() const override;
+  std::vector<std::string_view> setByCalls() const override { return {"numAxes"}; }
 
  protected:
   void attached() override { apply(); }

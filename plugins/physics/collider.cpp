@@ -18,6 +18,7 @@ void Collider::describe(Description<Collider>& d) {
   d.doc("Collision geometry. Its child handlers define what a contact does.");
   d.implements<ICollider>();
   d.implements<IFollowsTransform>();
+  d.implements<ISceneCalls>();
   d.method("setPosition", &Collider::setPosition)
       .parameters({"position [m]"})
       .surplusIgnored()
@@ -29,6 +30,9 @@ void Collider::describe(Description<Collider>& d) {
   d.method("setRotation", &Collider::setRotation)
       .parameters({"matrix: 6 or 16 numbers"})
       .doc("Rotation inside a TransformCollider or on a body; in the world for a static collider.");
+  d.method("setLocalPose", &Collider::setLocalPose)
+      .parameters({"position [m]", "rotation: 9 numbers, row by row"})
+      .doc("Pose in the frame of its transform or body, or inside a TransformCollider.");
   d.method("addCollisionHandler", &Collider::addCollisionHandler)
       .parameters({"class"})
       .doc("Creates a handler of that class below it.");
@@ -162,6 +166,20 @@ void Collider::setRotation(const std::vector<double>& matrix) {
   const Mat3 r = physics::poseFrom(matrix).rotation;
   local_.rotation = isStaticInWorld() ? Mat3(physics::frameOf(*this).rotation.transpose() * r) : r;
   attach();
+}
+
+void Collider::setLocalPose(const Vec3& position, const std::vector<double>& rotation) {
+  local_ = physics::poseOfNumbers(*this, position, rotation);
+  attach();
+}
+
+std::vector<SceneCall> Collider::sceneCalls() const {
+  std::vector<SceneCall> calls;
+  if (!local_.position.isZero(0) || !local_.rotation.isIdentity(0))
+    calls.push_back({"setLocalPose", physics::numbersOfPose(local_)});
+  for (const std::string& name : notCollideWith_) calls.push_back({"addNotCollideWithColliderName", {name, true}});
+  for (const std::string& name : collideWith_) calls.push_back({"addCollideWithColliderName", {name, true}});
+  return calls;
 }
 
 void Collider::addCollisionHandler(const std::string& className) { create<CollisionHandler>(className); }

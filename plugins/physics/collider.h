@@ -9,7 +9,11 @@ namespace spark {
 
 /// Base of colliders. A collider moves with the RigidBody before it among its siblings; without one it is static, at
 /// the pose of its nearest transform. A collider inside a TransformCollider is part of that one.
-class Collider : public PhysicsObject, public ICollider, public IFollowsTransform, public engine::IExtended {
+class Collider : public PhysicsObject,
+                 public ICollider,
+                 public IFollowsTransform,
+                 public engine::IExtended,
+                 public ISceneCalls {
   SPARK_CLASS(Collider, PhysicsObject)
  public:
   /// The collision handlers of a collider; collected again when the shape of the tree changed.
@@ -29,6 +33,8 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   virtual std::optional<Vec3> halfExtent(const Mat3& /*rotation*/) const { return std::nullopt; }
   Pose poseInTransform() const override { return offset(); }
   void follow(const Matrix& world) override;
+  /// Pose, and names of colliders; derived classes add their shape where no property has it.
+  std::vector<SceneCall> sceneCalls() const override;
   void setBlock(const engine::Block& block) override;
   void removeBlock(std::uint64_t kind) override;
 
@@ -93,6 +99,7 @@ class Collider : public PhysicsObject, public ICollider, public IFollowsTransfor
   void setPosition(const Vec3& p);
   void setLocalPosition(const Vec3& p);
   void setRotation(const std::vector<double>& matrix);
+  void setLocalPose(const Vec3& position, const std::vector<double>& rotation);
   void addCollisionHandler(const std::string& className);
   void addNotCollideWithColliderName(std::string name, bool on);
   void addCollideWithColliderName(std::string name, bool on);

@@ -25,6 +25,12 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
       .doc("Names of the effectors that a rule about self-collisions may freeze.");
 }
 
+std::vector<SceneCall> BoxCollider::sceneCalls() const {
+  std::vector<SceneCall> calls = Collider::sceneCalls();
+  for (const std::string& name : freezes_) calls.push_back({"addSCFreezeJointEffName", {name}});
+  return calls;
+}
+
 std::optional<ShapeDescription> BoxCollider::shape() const {
   ShapeDescription s;
   s.shape = Shape::box;
@@ -66,6 +72,12 @@ void PlaneCollider::describe(Description<PlaneCollider>& d) {
       .doc("Depth of a point, given in the frame of its transform, below the plane [m]; negative above it.");
 }
 
+std::vector<SceneCall> PlaneCollider::sceneCalls() const {
+  std::vector<SceneCall> calls = Collider::sceneCalls();
+  calls.push_back({"setParams", List(plane_.begin(), plane_.end())});
+  return calls;
+}
+
 std::optional<ShapeDescription> PlaneCollider::shape() const {
   ShapeDescription s;
   s.shape = Shape::plane;
@@ -92,6 +104,13 @@ void RayCollider::describe(Description<RayCollider>& d) {
   d.method("setParams", &RayCollider::setParams)
       .parameters({"origin [m]", "direction", "length [m]"})
       .doc("The ray, in the frame of its body or transform.");
+}
+
+std::vector<SceneCall> RayCollider::sceneCalls() const {
+  const Vec3 &o = ray_.rayOrigin, &d = ray_.rayDirection;
+  std::vector<SceneCall> calls = Collider::sceneCalls();
+  calls.push_back({"setParams", {o.x(), o.y(), o.z(), d.x(), d.y(), d.z(), ray_.length}});
+  return calls;
 }
 
 std::optional<ShapeDescription> RayCollider::shape() const { return ray_; }

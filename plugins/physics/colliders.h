@@ -47,6 +47,7 @@ class BoxCollider : public Collider, public IRobotBox {
   SPARK_CLASS(BoxCollider, Collider)
  public:
   static void describe(Description<BoxCollider>& d);
+  std::vector<SceneCall> sceneCalls() const override;
   std::optional<engine::ShapeDescription> shape() const override;
   std::optional<Vec3> halfExtent(const Mat3& rotation) const override {
     return Vec3(rotation.cwiseAbs() * (lengths_ / 2));
@@ -143,6 +144,7 @@ class PlaneCollider : public Collider {
   SPARK_CLASS(PlaneCollider, Collider)
  public:
   static void describe(Description<PlaneCollider>& d);
+  std::vector<SceneCall> sceneCalls() const override;
   std::optional<engine::ShapeDescription> shape() const override;
 
  private:
@@ -156,6 +158,7 @@ class RayCollider : public Collider {
   SPARK_CLASS(RayCollider, Collider)
  public:
   static void describe(Description<RayCollider>& d);
+  std::vector<SceneCall> sceneCalls() const override;
   std::optional<engine::ShapeDescription> shape() const override;
 
  private:

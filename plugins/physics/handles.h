@@ -31,6 +31,23 @@ class SharedSpace {
 
 /// The current world pose of the nearest transform above a node; identity without one.
 inline Pose frameOf(const SceneNode& node) { return node.transform() ? toPose(node.transform()->worldNow()) : Pose{}; }
+
+/// A pose as a position and the nine numbers of its rotation, row by row. Throws Error unless they are finite and nine.
+inline Pose poseOfNumbers(const Leaf& node, const Vec3& position, const std::vector<double>& rotation) {
+  if (rotation.size() != 9)
+    throw Error(fmt::format("{}: expected 9 numbers of a rotation, found {}", node.path(), rotation.size()));
+  const Mat3 matrix = Eigen::Map<const Mat3>(rotation.data()).transpose();
+  if (!position.allFinite() || !(matrix.cwiseAbs().maxCoeff() <= 2))
+    throw RefusedValue(fmt::format("{}: expected the finite numbers of a pose", node.path()));
+  return {position, matrix};
+}
+/// The same numbers of a pose.
+inline List numbersOfPose(const Pose& pose) {
+  List out{pose.position.x(), pose.position.y(), pose.position.z()};
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 3; ++column) out.emplace_back(pose.rotation(row, column));
+  return out;
+}
 /// A pose from 6 numbers (position [m], rotation [deg]) or 16 (a column-major matrix); identity from none. Throws Error
 /// for another number of numbers, or when one is not finite.
 Pose poseFrom(const std::vector<double>& numbers);

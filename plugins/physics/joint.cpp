@@ -20,6 +20,7 @@ void Joint::describe(Description<Joint>& d) {
   using P = JointParameter;
   d.doc("Connects two bodies, or a body with the world.");
   d.implements<IJoint>();
+  d.implements<ISceneCalls>();
   d.abstract();
   d.method("attach", &J::attach)
       .parameters({"path of the first body", "path of the second"})
@@ -58,6 +59,9 @@ void Joint::describe(Description<Joint>& d) {
   axis("DryFriction", &J::set<P::dryFriction>, &J::get<P::dryFriction>, "Nm or N",
        "Largest force of dry friction; of an axis with a controller.");
 
+  d.method("setLocalAxis", &J::setLocalAxis)
+      .parameters({"axis", "direction"})
+      .doc("Sets the direction of an axis, in the joint's frame.");
   d.method("setSpring", &J::setSpring)
       .parameters({"axis", "stiffness [Nm/rad]", "position [rad]"})
       .doc("Passive spring beside motor and controller: stiffness (position - angle); of a slider N/m and m.");

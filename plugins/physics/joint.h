@@ -10,7 +10,7 @@ namespace spark {
 
 /// Base of joints. Bodies are given by paths relative to the joint. Anchors and axes are given in the frame of the
 /// nearest transform. It is evaluated when they are set, or at attach() when they are set before.
-class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
+class Joint : public PhysicsObject, public IJoint, public engine::IExtended, public ISceneCalls {
   SPARK_CLASS(Joint, PhysicsObject)
  public:
   static void describe(Description<Joint>& d);
@@ -46,6 +46,7 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   bool feedback() const override { return feedback_; }
   void setBlock(const engine::Block& block) override;
   void removeBlock(std::uint64_t kind) override;
+  std::vector<SceneCall> sceneCalls() const override;
   /// The index in the model; kNone when it is not linked or does not act.
   engine::Index index() const { return world() ? world()->index(joint_) : engine::kNone; }
 
@@ -106,6 +107,13 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended {
   void expectDirection(const Vec3& direction) const;
   /// Sets an axis to a world direction, with errors that name the joint.
   void turnAxis(int axis, const Vec3& direction);
+  void setLocalAxis(int axis, const Vec3& direction) {
+    expectAxis(axis);
+    setAxisLocal(axis, direction);
+  }
+  /// Throws Error if the joint is not as its calls leave it: at coordinate 0, with one anchor.
+  void expectAsMade() const;
+  void addParameterCalls(std::vector<SceneCall>& calls, int axis) const;
   void setSpring(int axis, double stiffness, double position);
   double stiffness(int axis) const;
   double springPosition(int axis) const;

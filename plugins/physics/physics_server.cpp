@@ -40,6 +40,7 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.property("contactsPerPair", &S::contactsPerPair_)
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
+  d.method("settle", &S::settle).doc("Moves the origins of bodies to their centres of mass, as the next step would.");
   d.on<&PhysicsServer::physics>(phase::kPhysics);
   d.on<&PhysicsServer::place>(phase::kPlace);
   d.on<&PhysicsServer::restored>(kRestored);

@@ -78,6 +78,13 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void place(const Event& event);
   /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.
   void shiftSurroundings();
+  /// shiftSurroundings() before the first step, for what reads a scene then.
+  void settle() {
+    if (!refresh()) return;
+    placeTransforms();
+    shiftSurroundings();
+    place({phase::kPlace, 0, 0, 0, nullptr});
+  }
   /// Logs the bodies that had to be reset.
   void reportFaults();
   bool hasEngines() const { return engine_ && (collision_ || engine_->capabilities().findsContacts()); }

@@ -11,6 +11,7 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.doc("A rigid body: it moves the nearest transform above it.");
   d.implements<IRigidBody>();
   d.implements<IFollowsTransform>();
+  d.implements<ISceneCalls>();
   d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass. Setting it scales the inertia as well.");
   d.property("position", &B::position, &B::setPosition).unit("m").savedByClass().doc("Centre of mass in the world.");
   d.property("velocity", &B::velocity, &B::setVelocity)
@@ -80,6 +81,9 @@ void RigidBody::describe(Description<RigidBody>& d) {
           "engines whose drag and contacts depend on parts. The first one has the joints. The body's mass stays; parts "
           "have shares of it, until its distribution is changed. The quaternion turns to its principal axes, where "
           "several fit.");
+  d.method("setLocalPose", &B::setLocalPose)
+      .parameters({"position [m]", "rotation: 9 numbers, row by row"})
+      .doc("Sets the pose in the frame of the nearest transform, which is in single precision, in double precision.");
   d.method("translateMass", &B::translateMass)
       .parameters({"offset [m]"})
       .doc("Accepted for old scenes; has no effect, as in the installed base.");
@@ -292,6 +296,37 @@ void RigidBody::setMassParameters(double m, const Vec3& center, const Vec3& diag
         "taken. Move the transform there.",
         where(), center.x(), center.y(), center.z());
   applyMass({m, Vec3::Zero(), symmetric(diagonal, products)});
+}
+
+void RigidBody::setLocalPose(const Vec3& position, const std::vector<double>& rotation) {
+  const Pose frame = physics::frameOf(*this), local = physics::poseOfNumbers(*this, position, rotation);
+  setPose({frame.position + frame.rotation * local.position, frame.rotation * local.rotation});
+}
+
+std::vector<SceneCall> RigidBody::sceneCalls() const {
+  if (!pendingShift_.isZero(0))
+    throw Error(fmt::format("{}: cannot be written: its origin is about to move to the centre of mass", where()));
+  std::vector<SceneCall> calls;
+  const auto numbersOf = [](double mass, const Vec3& at, const Mat3& i) {
+    return List{mass, at.x(), at.y(), at.z(), i(0, 0), i(1, 1), i(2, 2), i(0, 1), i(0, 2), i(1, 2)};
+  };
+  const engine::BodyState now = state();
+  const Pose frame = physics::frameOf(*this);
+  if (now.position != frame.position || !now.rotation.isApprox(frame.rotation, 1e-7)) {
+    // The frame is a matrix in single precision: its inverse is not its transpose.
+    const Mat3 inverse = frame.rotation.inverse();
+    calls.push_back(
+        {"setLocalPose", physics::numbersOfPose({inverse * (now.position - frame.position), inverse * now.rotation})});
+  }
+  if (mass_.mass != engine::Mass().mass || mass_.inertia != engine::Mass().inertia)
+    calls.push_back({"setMassParameters", numbersOf(mass_.mass, Vec3::Zero(), mass_.inertia)});
+  for (const engine::Part& part : parts_) {
+    List numbers = numbersOf(part.mass, part.center, part.inertia);
+    const Eigen::Quaterniond q(part.axes);
+    for (const double v : {q.w(), q.x(), q.y(), q.z()}) numbers.emplace_back(v);
+    calls.push_back({"addPart", std::move(numbers)});
+  }
+  return calls;
 }
 
 bool RigidBody::takeUnplaced() {

@@ -3,6 +3,7 @@
 /// Rigid bodies.
 
 #include "api/mass.h"
+#include "api/scene_calls.h"
 #include "world.h"
 
 namespace spark {
@@ -19,7 +20,7 @@ class Body : public PhysicsObject {
 
 /// A rigid body. It takes its pose from the nearest transform when it is linked; after each step that transform takes
 /// the pose of the body.
-class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
+class RigidBody : public Body, public IRigidBody, public IFollowsTransform, public ISceneCalls {
   SPARK_CLASS(RigidBody, Body)
  public:
   static void describe(Description<RigidBody>& d);
@@ -39,6 +40,8 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void enable() override;
   Transform* bodyTransform() const override { return transform(); }
   void follow(const Matrix& world) override;
+  std::vector<SceneCall> sceneCalls() const override;
+  std::vector<std::string_view> setByCalls() const override { return {"mass", "position"}; }
 
   /// The body in the model; none while the node is not linked.
   physics::BodyHandle handle() const { return body_; }
@@ -120,6 +123,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform {
   void setLinkOrigin(const Vec3& origin);
   bool usesGravity() const { return gravity_; }
   void useGravity(bool on);
+  void setLocalPose(const Vec3& position, const std::vector<double>& rotation);
   void addForceBy(const Vec3& f) { addForce(f); }
 
   std::shared_ptr<physics::WorldModel> world_;

@@ -15,7 +15,9 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
   d.property("imports", &MjcfImporter::imports_).readOnly().doc("Models imported so far.");
 }
 
-bool MjcfImporter::recognises(std::string_view text) const { return mjcf::firstTag(text) == "mujoco"; }
+bool MjcfImporter::recognises(std::string_view text, std::string_view file) const {
+  return mjcf::firstTag(text) == "mujoco" || file.ends_with(".mjcf") || file.ends_with(".xml");
+}
 
 void MjcfImporter::import(std::string_view file, Node& root, const List& arguments) {
   if (arguments.size() > 1)

@@ -13,11 +13,11 @@ class MjcfImporter : public Leaf, public ISceneImporter {
  public:
   static void describe(Description<MjcfImporter>& d);
 
-  bool recognises(std::string_view text) const override;
+  bool recognises(std::string_view text, std::string_view file) const override;
   /// Arguments: none, or a prefix for the names of all nodes but perceptors and effectors. Throws Error with
   /// file:line:column; the tree is then as before.
   void import(std::string_view file, Node& root, const List& arguments) override;
-  bool keepsTransforms() const override { return true; }
+  bool keepsTransforms(std::string_view) const override { return true; }
 
  private:
   bool strict_ = false;

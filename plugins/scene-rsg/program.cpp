@@ -68,6 +68,9 @@ class Compiler {
   Statement define(Position at, const Position& end, const Site& site);
   Statement choose(Position at, const Position& end, const Site& site);
   Statement call(std::string_view method, Position at, const Position& end, const Site& site);
+  Statement set(Position at, const Position& end, const Site& site);
+  /// Adds the operands of a call.
+  void addOperands(Statement& s, Position at, const Position& end);
   Operand operand(const Element& e);
   /// The slot of a variable; a new one for a new name.
   std::size_t slot(std::string_view variable);
@@ -122,6 +125,7 @@ Statement Compiler::atom(Position& at, const Position& end, const Element& list)
   if (word == "template") return parameters(rest, end, s.site);
   if (word == "define") return define(rest, end, s.site);
   if (word == "switch") return choose(rest, end, s.site);
+  if (word == "set" && program_.ours) return set(rest, end, s.site);
   return call(word, rest, end, s.site);
 }
 
@@ -182,13 +186,30 @@ Statement Compiler::call(std::string_view method, Position at, const Position& e
   s.kind = Statement::Kind::call;
   s.site = site;
   s.text = method;
-  s.immediate = std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
+  // Of ours, poses of bodies as well: joints are attached at these poses, in any order of the text.
+  s.immediate = (program_.ours && method == "setLocalPose") ||
+                std::find(kImmediate.begin(), kImmediate.end(), method) != kImmediate.end();
+  addOperands(s, at, end);
+  return s;
+}
+
+Statement Compiler::set(Position at, const Position& end, const Site& site) {
+  if (!(at != end) || (*at).isList())
+    return failing(site, "expected the name of a property and its value after set, as in (set contactMu 0.5)");
+  Statement s;
+  s.kind = Statement::Kind::set;
+  s.site = site;
+  s.text = (*at).text();
+  addOperands(s, ++at, end);
+  return s;
+}
+
+void Compiler::addOperands(Statement& s, Position at, const Position& end) {
   for (; at != end; ++at) s.operands.push_back(operand(*at));
   s.constant =
       std::all_of(s.operands.begin(), s.operands.end(), [](const Operand& o) { return o.kind == Operand::Kind::text; });
   if (s.constant)
     for (const Operand& o : s.operands) s.arguments.emplace_back(o.text);
-  return s;
 }
 
 Operand Compiler::operand(const Element& e) {
@@ -228,24 +249,33 @@ bool isMagic(std::string_view word) {
   return word == "RSG" || word == "RubySceneGraph" || word == "RDS" || word == "RubyDeltaScene";
 }
 
+bool isDelta(std::string_view word) { return word == "RDS" || word == "RubyDeltaScene"; }
+
 /// An Error at a location in a file.
 Error errorAt(std::string_view resource, std::uint32_t line, std::uint32_t column, std::string_view text) {
   return Error(fmt::format("{}:{}:{}: {}", resource, line, column, text));
 }
 
-/// Throws Error unless `header` is that of a scene file in version 0.1.
-void checkHeader(std::string_view resource, const Element& header) {
+/// The second number of the version in a header, 1 or 2; 0 for anything else.
+int versionOf(const Element& header) {
   const auto number = [&](std::size_t i) {
     return header.at(i) && header.at(i).isText() ? std::atoi(std::string(header.at(i).text()).c_str()) : -1;
   };
-  if (header.isList() && header.size() == 3 && isMagic(header.head()) && number(1) == 0 && number(2) == 1) return;
+  if (!header.isList() || header.size() != 3 || !isMagic(header.head()) || number(1) != 0) return 0;
+  // A delta scene changes nodes of others, in the installed base's way only.
+  return number(2) == 1 ? 1 : number(2) == 2 && !isDelta(header.head()) ? 2 : 0;
+}
+
+/// As versionOf(), but throws Error for anything else.
+int checkHeader(std::string_view resource, const Element& header) {
+  if (const int version = versionOf(header)) return version;
 
   // The beginning of what was found instead.
   std::string found = header.isList() ? "(" : std::string(header.text());
   for (std::size_t i = 0; header.isList() && i < std::min<std::size_t>(header.size(), 4); ++i)
     found += (i ? " " : "") + (header.at(i).isList() ? "..." : std::string(header.at(i).text().substr(0, 32)));
   throw errorAt(resource, header.line(), header.column(),
-                fmt::format("expected the header (RSG 0 1) or (RDS 0 1), found {}{}", found.substr(0, 140),
+                fmt::format("expected the header (RSG 0 1), (RSG 0 2) or (RDS 0 1), found {}{}", found.substr(0, 140),
                             header.isList() ? ")" : ""));
 }
 
@@ -255,6 +285,12 @@ bool looksLikeScene(std::string_view text) {
   Predicates header;
   readSexp(text, header, {8, 64}, 1);
   return !header.empty() && (*header.begin()).isList() && isMagic((*header.begin()).head());
+}
+
+bool isOurs(std::string_view text) {
+  Predicates header;
+  readSexp(text, header, {8, 64}, 1);
+  return !header.empty() && versionOf(*header.begin()) == 2;
 }
 
 std::shared_ptr<const Program> compile(std::string_view resource, std::string_view text, const ReadingRules& rules) {
@@ -267,10 +303,10 @@ std::shared_ptr<const Program> compile(std::string_view resource, std::string_vi
   if (!(at != read.end()))
     throw errorAt(resource, endLine, endColumn,
                   result.message.empty() ? "expected the header (RSG 0 1), found nothing" : result.message);
-  checkHeader(resource, *at);
   auto program = std::make_shared<Program>();
   program->resource = resource;
-  program->delta = (*at).head() == "RDS" || (*at).head() == "RubyDeltaScene";
+  program->ours = checkHeader(resource, *at) == 2;
+  program->delta = isDelta((*at).head());
 
   // The body.
   ++at;
@@ -282,7 +318,7 @@ std::shared_ptr<const Program> compile(std::string_view resource, std::string_vi
                             where(*program, siteOf(*at)), (*at).text()));
 
   // Text after the body.
-  if (!rules.looseTrailingParen) {
+  if (!rules.looseTrailingParen || program->ours) {
     Predicates rest;
     const ReadResult more = readSexp(text.substr(result.consumed), rest, limits, 1);
     if (!rest.empty() || !more.message.empty())

@@ -46,15 +46,16 @@ struct Statement {
     define,      ///< def: `slots[0]` := `operands[0]`
     choose,      ///< switch: runs `blocks[i]` for the first i where `operands[1 + i]` equals `operands[0]`
     call,        ///< calls the method `text` of the current node with `operands`
+    set,         ///< version 0.2: sets the property `text` of the current node to `operands`
     error        ///< throws an Error with the message `text`
   };
   Kind kind = Kind::block;
-  bool immediate = false;  ///< call: made at once, not queued to the end of the file
+  bool immediate = false;  ///< call: made at once; all others and set are queued to the end of the file
   std::string text;
   std::vector<std::size_t> slots;
   std::vector<Operand> operands;
-  bool constant = false;  ///< call: all operands are texts
-  List arguments;         ///< call, if constant: these texts
+  bool constant = false;  ///< call, set: all operands are texts
+  List arguments;         ///< call, set, if constant: these texts
   std::vector<Block> blocks;
   Site site;
 
@@ -69,6 +70,7 @@ struct Statement {
 struct Program {
   std::string resource;                ///< name of the file
   bool delta = false;                  ///< RDS: the file changes existing nodes
+  bool ours = false;                   ///< version 0.2: without the leniency of the installed base
   std::vector<std::string> variables;  ///< names by slot, with '$'
   Block body;
 };
@@ -81,6 +83,8 @@ struct ReadingRules {
 
 /// True when the text begins with the header of a scene file, in any version.
 bool looksLikeScene(std::string_view text);
+/// True when the text begins with the header of a scene file in version 0.2, which is Spark's own.
+bool isOurs(std::string_view text);
 
 /// Compiles the text of the file `resource`. Throws Error with file:line:column when the header or the brackets are
 /// wrong. Other errors become statements that fail when they run, as in the installed base.

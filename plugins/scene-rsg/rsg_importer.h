@@ -49,8 +49,12 @@ class RsgImporter : public Leaf, public ISceneImporter {
  public:
   static void describe(Description<RsgImporter>& d);
 
-  bool recognises(std::string_view text) const override { return rsg::looksLikeScene(text); }
+  bool recognises(std::string_view text, std::string_view file) const override {
+    return rsg::looksLikeScene(text) || file.ends_with(".rsg");
+  }
   void import(std::string_view file, Node& root, const List& arguments) override;
+  bool transactional(std::string_view text) const override { return rsg::isOurs(text); }
+  bool keepsTransforms(std::string_view text) const override { return rsg::isOurs(text); }
 
  private:
   friend class rsg::Run;

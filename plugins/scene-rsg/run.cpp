@@ -4,6 +4,7 @@
 
 #include "expression.h"
 #include "spark/error.h"
+#include "spark/plugin_object.h"
 
 namespace spark::rsg {
 
@@ -15,6 +16,13 @@ class Located : public Error {
 };
 
 Error tooLong() { return Error(fmt::format("expected a text of at most {} bytes, found a longer one", kMaxText)); }
+/// Uses the plugins that provide a class and its bases, as models of other languages do.
+void provide(Kernel& kernel, std::string_view className) {
+  if (!kernel.findClass(className))
+    if (const Plugin* const provider = kernel.plugins().providerOf(className)) kernel.plugins().use(provider->name());
+  if (const ClassObject* const known = kernel.findClass(className); known && !known->baseName().empty())
+    provide(kernel, known->baseName());
+}
 }  // namespace
 
 template <class F>
@@ -30,8 +38,9 @@ decltype(auto) Run::located(const Site& site, F f) const {
 
 Run::Run(RsgImporter& importer, const Program& program, std::vector<std::string> arguments)
     : importer_(importer),
+      scenes_(importer.kernel().root().find<ISceneServer>()),
       program_(program),
-      environment_(program, std::move(arguments), importer.rules_.defineByName) {}
+      environment_(program, std::move(arguments), importer.rules_.defineByName || program.ours) {}
 
 void Run::execute(Node& root) {
   root_ = &root;
@@ -60,8 +69,8 @@ void Run::runBlock(const Block& block, Cursor cursor) {
 
 void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild) {
   if (!cursor.node) throw Error("the node that this belongs to was removed");
-  Node& node = *cursor.node;
-  const auto enter = [&](Node& inner) {
+  Leaf& node = *cursor.node;
+  const auto enter = [&](Leaf& inner) {
     cursor = {&inner, &nextChild};
     nextChild = 0;
   };
@@ -84,6 +93,7 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
     case Statement::Kind::choose:
       return choose(s, cursor);
     case Statement::Kind::call:
+    case Statement::Kind::set:
       return call(s, node);
     case Statement::Kind::error:
       throw Error(s.text);
@@ -92,25 +102,30 @@ void Run::runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChil
 
 ClassObject& Run::classOf(const Statement& s) const {
   if (s.nodeClass) return *s.nodeClass;
-  ClassObject& nodeClass = importer_.kernel().classOf(s.text);
-  if (!nodeClass.isA(SceneNode::kClassName))
+  Kernel& kernel = importer_.kernel();
+  if (program_.ours) provide(kernel, s.text);
+  ClassObject& nodeClass = kernel.classOf(s.text);
+  // Of ours, what engines read beside a node is no scene node, and cannot have children.
+  if (!nodeClass.isA(SceneNode::kClassName) && !(program_.ours && nodeClass.isOrOffers("IExtension")))
     throw Error(fmt::format("expected a class of scene nodes, found {}, which does not derive from {}",
                             nodeClass.name(), SceneNode::kClassName));
   s.nodeClass = &nodeClass;
   return nodeClass;
 }
 
-Node& Run::makeNode(const Statement& s, Node& parent) {
+Leaf& Run::makeNode(const Statement& s, Leaf& parent) {
   ClassObject& nodeClass = classOf(s);
   Budget& budget = importer_.budget_;
   if (++budget.nodes > budget.maxNodes)
     importer_.exhausted(
         fmt::format("too many nodes: one import may make at most {} ({}.maxNodes)", budget.maxNodes, importer_.path()));
-  return *parent.add(nodeClass.create()).asNode();
+  Node* const above = parent.asNode();
+  if (!above) throw Error(fmt::format("{} cannot have children", parent.path()));
+  return above->add(nodeClass.create());
 }
 
 Node& Run::nextNode(Cursor& cursor) {
-  const auto& children = cursor.node->children();
+  const auto& children = cursor.node->asNode()->children();
   const std::size_t i = (*cursor.nextChild)++;
   if (i >= children.size())
     throw Error(
@@ -119,11 +134,12 @@ Node& Run::nextNode(Cursor& cursor) {
   throw Error(fmt::format("expected a scene node, found {}", children[i]->path()));
 }
 
-Node& Run::select(const Statement& s, Node& parent) {
-  Leaf* found = parent.child(s.text);
+Node& Run::select(const Statement& s, Leaf& parent) {
+  const Node* const above = parent.asNode();
+  Leaf* found = above ? above->child(s.text) : nullptr;
   if (found && found->as<SceneNode>()) return *found->asNode();
   std::vector<std::string> names;
-  for (const auto& child : parent.children()) names.push_back(child->name());
+  for (std::size_t i = 0; above && i < above->children().size(); ++i) names.push_back(above->children()[i]->name());
   throw Error(fmt::format("there is no scene node '{}' in {}.{}", s.text, parent.path(), didYouMean(s.text, names)));
 }
 
@@ -135,7 +151,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
     try {
       runBlock(s.blocks[i], cursor);
     } catch (const Error& e) {
-      if (importer_.rules_.strict || importer_.budget_.exhausted) throw;
+      if (strict() || importer_.budget_.exhausted) throw;
       complain(s, Level::error, fmt::format("the case '{}' failed, the rest goes on: {}", value, e.what()));
     }
     return;
@@ -149,7 +165,7 @@ void Run::choose(const Statement& s, const Cursor& cursor) {
   throw Error(fmt::format("no case matches '{}', there are {}", value, labels));
 }
 
-void Run::call(const Statement& s, Node& node) {
+void Run::call(const Statement& s, Leaf& node) {
   ++importer_.calls_;
   List computed;
   if (!s.constant) {
@@ -165,14 +181,15 @@ void Run::call(const Statement& s, Node& node) {
     invoke(s, node, arguments);
 }
 
-void Run::import(const Statement& s, Node& node, const List& arguments) {
-  if (!methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
+void Run::import(const Statement& s, Leaf& node, const List& arguments) {
+  Node* const root = node.asNode();
+  if (!root || !methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
   const std::string& file = arguments.front().toString();
   try {
-    importer_.kernel().root().require<ISceneServer>().importScene(file, node,
+    importer_.kernel().root().require<ISceneServer>().importScene(file, *root,
                                                                   List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
-    if (importer_.rules_.strict || importer_.budget_.exhausted)
+    if (strict() || importer_.budget_.exhausted)
       throw Located(fmt::format("{}: the import of '{}' failed", where(program_, s.site), file), e);
     complain(s, Level::error, fmt::format("the import of '{}' failed, the rest goes on: {}", file, e.what()));
   }
@@ -188,9 +205,10 @@ const Method* Run::methodOf(const Statement& s, Leaf& node) const {
 }
 
 void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
+  if (s.kind == Statement::Kind::set) return set(s, node, arguments);
   const Method* method = methodOf(s, node);
   if (!method) {
-    if (s.complained && !importer_.rules_.strict) return;
+    if (s.complained && !strict()) return;
     std::vector<std::string> names;
     for (const Method* m : node.classObject()->methods()) names.push_back(m->name);
     return complain(
@@ -198,14 +216,47 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
         fmt::format("class {} has no method '{}'.{}", node.classObject()->name(), s.text, didYouMean(s.text, names)));
   }
   if (s.text == "unlinkLeaf" && &node == root_) throw Error("a scene cannot remove the node that it is imported into");
-  if (importer_.rules_.strict || !importer_.rules_.looseArguments) {
-    callMethod(node, s.text, arguments);
+  beforeCall(s, node);
+  if (strict() || !importer_.rules_.looseArguments) {
+    const Ref<Transform> transform(program_.ours && s.immediate ? node.as<Transform>() : nullptr);
+    callMethod(node, s.text, arguments);  // may remove the node
+    // A transform that has nothing below it yet moves nothing: what is made there later has its pose from the start.
+    if (transform && transform->children().empty()) transform->setMovedSincePlace(false);
     return;
   }
   const ClassObject& called = *node.classObject();  // the call may remove the node
   std::string whyNot;
   if (!callLoosely(node, *method, arguments, whyNot))
     complain(s, Level::warning, fmt::format("{} of {} is skipped: {}", s.text, called.name(), whyNot));
+}
+
+void Run::set(const Statement& s, Leaf& node, const List& arguments) {
+  ClassObject& c = *node.classObject();
+  const Property* const property = c.property(s.text);
+  if (!property) {
+    std::vector<std::string> names;
+    for (const Property* p : c.properties()) names.push_back(p->name);
+    throw Error(fmt::format("class {} has no property '{}'.{}", c.name(), s.text, didYouMean(s.text, names)));
+  }
+  if (!property->set) throw Error(fmt::format("the property {} of class {} is read only", s.text, c.name()));
+  if (scenes_) scenes_->willChange(node);
+  Args args{arguments};
+  try {
+    writeProperty(*property, node, args);
+  } catch (const std::exception& e) {
+    throw Error(fmt::format("cannot set {} of {}", s.text, node.path()), e);
+  }
+  if (!args.atEnd())
+    throw Error(fmt::format("cannot set {} of {}: expected {}, found {} values", s.text, node.path(), property->type,
+                            arguments.size()));
+}
+
+void Run::beforeCall(const Statement& s, Leaf& node) {
+  if (!scenes_) return;
+  if (s.text == "unlinkLeaf") return scenes_->willRemove(node);
+  if (s.text != "unlinkChildren") return scenes_->willChange(node);
+  if (const Node* const parent = node.asNode())
+    for (const auto& child : parent->children()) scenes_->willRemove(*child);
 }
 
 void Run::flush() {
@@ -252,8 +303,8 @@ std::string Run::textOf(const Operand& o) {
     // eval: the value of that text.
     ++importer_.evals_;
     const auto lookup = [this](std::string_view group, std::string_view member) { return variable(group, member); };
-    std::string result =
-        resultText(evaluate(text, lookup, importer_.rules_.integerDivision), importer_.rules_.evalDigits6);
+    std::string result = resultText(evaluate(text, lookup, importer_.rules_.integerDivision),
+                                    importer_.rules_.evalDigits6 && !program_.ours);
     if (result.size() > kMaxText) throw tooLong();
     return result;
   });
@@ -275,7 +326,7 @@ Value Run::variable(std::string_view group, std::string_view member) const {
 }
 
 void Run::complain(const Statement& s, Level level, const std::string& text) {
-  if (importer_.rules_.strict) throw Error(text);
+  if (strict()) throw Error(text);
   if (s.complained) return;
   s.complained = true;
   importer_.kernel().log().write(level, fmt::format("{}: {}{}", where(program_, s.site), text, importer_.chain()));

@@ -33,7 +33,7 @@ class Run {
  private:
   /// The current node of a list.
   struct Cursor {
-    Ref<Node> node;
+    Ref<Leaf> node;
     std::size_t* nextChild;  ///< delta scenes: index of the child that the next nd selects
   };
   /// A call that is made at the end of the file.
@@ -46,16 +46,19 @@ class Run {
   void runBlock(const Block& block, Cursor cursor);
   /// Runs a statement. When it enters a node, `cursor` refers to that node and to `nextChild`.
   void runStatement(const Statement& s, Cursor& cursor, std::size_t& nextChild);
-  Node& makeNode(const Statement& s, Node& parent);
+  Leaf& makeNode(const Statement& s, Leaf& parent);
   ClassObject& classOf(const Statement& s) const;
   Node& nextNode(Cursor& cursor);
-  Node& select(const Statement& s, Node& parent);
+  Node& select(const Statement& s, Leaf& parent);
   void choose(const Statement& s, const Cursor& cursor);
   /// Evaluates the arguments of a call, and makes or queues it.
-  void call(const Statement& s, Node& node);
-  void import(const Statement& s, Node& node, const List& arguments);
-  /// Makes a call.
+  void call(const Statement& s, Leaf& node);
+  void import(const Statement& s, Leaf& node, const List& arguments);
+  /// Makes a call, or sets a property.
   void invoke(const Statement& s, Leaf& node, const List& arguments);
+  void set(const Statement& s, Leaf& node, const List& arguments);
+  /// Before a call of a method: what it may change or remove is older than the import or can be undone.
+  void beforeCall(const Statement& s, Leaf& node);
   /// The method that a call refers to; nullptr when the node's class has none of that name.
   const Method* methodOf(const Statement& s, Leaf& node) const;
   /// Makes the queued calls.
@@ -65,12 +68,15 @@ class Run {
   Value variable(std::string_view group, std::string_view member) const;
   /// Reports a problem that the installed base ignores: throws Error when `strict`, else logs it once per statement.
   void complain(const Statement& s, Level level, const std::string& text);
+  /// True when problems that the installed base ignores are errors.
+  bool strict() const { return importer_.rules_.strict || program_.ours; }
   /// Calls `f` and prefixes the message of an exception with file:line:column, unless it already has a location of this
   /// run.
   template <class F>
   decltype(auto) located(const Site& site, F f) const;
 
   RsgImporter& importer_;
+  ISceneServer* scenes_;  ///< nullptr: there is none
   const Program& program_;
   Environment environment_;
   Leaf* root_ = nullptr;  ///< the node that the file is imported into

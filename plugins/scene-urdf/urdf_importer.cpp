@@ -24,7 +24,9 @@ void UrdfImporter::describe(Description<UrdfImporter>& d) {
       .doc("Links of a robot collide with each other, unless a joint connects them.");
 }
 
-bool UrdfImporter::recognises(std::string_view text) const { return mjcf::firstTag(text) == "robot"; }
+bool UrdfImporter::recognises(std::string_view text, std::string_view file) const {
+  return mjcf::firstTag(text) == "robot" || file.ends_with(".urdf");
+}
 
 void UrdfImporter::import(std::string_view file, Node& root, const List& arguments) {
   urdf::Base base = urdf::Base::byFile;

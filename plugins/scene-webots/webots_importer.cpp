@@ -49,7 +49,9 @@ void WebotsImporter::describe(Description<WebotsImporter>& d) {
       .doc("Unsupported nodes and fields are errors; otherwise they are logged.");
 }
 
-bool WebotsImporter::recognises(std::string_view text) const { return webots::isWebots(text); }
+bool WebotsImporter::recognises(std::string_view text, std::string_view file) const {
+  return webots::isWebots(text) || file.ends_with(".wbt") || file.ends_with(".proto");
+}
 
 void WebotsImporter::import(std::string_view file, Node& root, const List& arguments) {
   const webots::Base base = baseOf(file, arguments);

@@ -1,5 +1,8 @@
 #include "materials.h"
 
+#include <charconv>
+#include <optional>
+
 namespace spark {
 
 void MaterialSolid::describe(Description<MaterialSolid>& d) {
@@ -38,8 +41,22 @@ void MaterialServer::reset() {
   create("MaterialSolid", "default");
 }
 
+namespace {
+/// The colour of a name such as "rgb22bb22", which importers give to materials without one.
+std::optional<Color> colorOf(std::string_view name) {
+  unsigned rgb = 0;
+  const char* const end = name.data() + name.size();
+  if (name.size() != 9 || !name.starts_with("rgb")) return std::nullopt;
+  if (const auto read = std::from_chars(name.data() + 3, end, rgb, 16); read.ec != std::errc() || read.ptr != end)
+    return std::nullopt;
+  const auto part = [&](unsigned shift) { return static_cast<float>(rgb >> shift & 255u) / 255; };
+  return Color{part(16), part(8), part(0), 1};
+}
+}  // namespace
+
 void MaterialServer::warnUnlessKnown(const std::string& name, const Leaf& user) {
   if (child(name) || warned_.contains(name)) return;
+  if (const std::optional<Color> color = colorOf(name)) return define(name, *color);
   if (warned_.size() < 1000) warned_.insert(name);  // bounded, because names may come from a client
   std::vector<std::string> names;
   for (const auto& c : children()) names.push_back(c->name());

@@ -39,7 +39,7 @@ class MaterialServer : public Node {
  public:
   static void describe(Description<MaterialServer>& d);
   /// Logs a warning, once for each name, when there is no such material; viewers use their default then. `user` is the
-  /// node that refers to it.
+  /// node that refers to it. A name that says its colour, such as "rgb22bb22", is defined.
   void warnUnlessKnown(const std::string& name, const Leaf& user);
 
  private:

@@ -19,6 +19,11 @@ void SceneServer::describe(Description<SceneServer>& d) {
       .doc(
           "After an import, removes imported transforms that are empty or contain only transforms; their children move "
           "up.");
+  d.property("transactionalImport", &SceneServer::transactionalImport_)
+      .choices({"byLanguage", "true", "false"})
+      .doc(
+          "What an import that fails leaves behind: true: nothing; false: the nodes that its importer keeps; "
+          "byLanguage: nothing, but those of a scene file of the installed base, (RSG 0 1), stay.");
   d.property("modifiedCount", &SceneServer::modifiedCount)
       .ofProcess()
       .doc("Number of changes of the scene's nodes and materials so far.");
@@ -48,72 +53,116 @@ void SceneServer::createScene(std::string path) {
   setScenePath(std::move(path));
 }
 
-ISceneImporter& SceneServer::importerFor(const std::string& file) {
+/// A file that is being imported. A file may import others.
+struct SceneServer::Importing {
+  explicit Importing(SceneServer& s) : server(s), outer(s.importing_), mark(s.undo_.mark(s.kernel())) {
+    if (!outer) server.firstImported_ = mark.lastId + 1, server.kept_.clear();
+    server.importing_ = this;
+  }
+  ~Importing() {
+    server.importing_ = outer;
+    if (outer) return;
+    server.firstImported_ = 0;
+    server.undo_.clear();
+  }
+  Importing(const Importing&) = delete;
+  Importing& operator=(const Importing&) = delete;
+
+  SceneServer& server;
+  Importing* outer;  ///< the import of the file that imports this one; nullptr: none does
+  ImportUndo::Mark mark;
+  bool undoes = false;  ///< it is undone if it fails
+};
+
+SceneServer::Known SceneServer::importerFor(const std::string& file) {
   if (importers_.empty())
     throw Error(
         fmt::format("{0} has no importer below it: add one, for instance new(\"RsgImporter\", \"{0}/rsg\")", path()));
-  if (importers_.size() == 1) return *importers_.all().front();
 
-  // With several importers the beginning of the file decides, once for each version of the file.
+  // The text decides, once for each version of the file.
   auto& files = kernel().root().require<IFileServer>();
   const std::uint64_t stamp = files.stamp(file);
   if (const auto known = known_.find(file);
       known != known_.end() && known->second.stamp == stamp && known->second.importer)
-    return *known->second.importer;
+    return known->second;
   const std::string text = files.read(file);
-  for (const Found<ISceneImporter>& importer : importers_)
-    if (importer->recognises(text)) {
-      known_.insert_or_assign(file, Known{stamp, importer});
-      return *importer;
-    }
+  const Found<ISceneImporter> importer = recognise(file, text);
+  Known known{stamp, importer, importer->transactional(text), importer->keepsTransforms(text)};
+  known_.insert_or_assign(file, known);
+  return known;
+}
+
+Found<ISceneImporter> SceneServer::recognise(const std::string& file, const std::string& text) const {
+  if (importers_.size() == 1) return importers_.all().front();
+  // What the text says goes before what its name says.
+  for (const std::string_view name : {std::string_view(), std::string_view(file)})
+    for (const Found<ISceneImporter>& importer : importers_)
+      if (importer->recognises(text, name)) return importer;
   std::string names;
   for (const Found<ISceneImporter>& importer : importers_) names += (names.empty() ? "" : ", ") + importer.leaf->name();
-  throw Error(fmt::format(
-      "none of the importers below {} ({}) knows the format of '{}': its beginning says none of their languages",
-      path(), names, file));
+  throw Error(
+      fmt::format("none of the importers below {} ({}) knows the format of '{}': neither its beginning nor its name is "
+                  "of one of their languages",
+                  path(), names, file));
+}
+
+/// The language of the outermost file decides for all that it imports.
+bool SceneServer::undoes(const Known& known) const {
+  if (importing_->outer) return importing_->outer->undoes;
+  return transactionalImport_ == "byLanguage" ? known.transactional : transactionalImport_ == "true";
+}
+
+void SceneServer::willChange(Leaf& node) {
+  if (importing_ && importing_->undoes && node.id() <= importing_->mark.lastId) undo_.remember(node, importing_->mark);
+}
+
+void SceneServer::willRemove(Leaf& node) {
+  if (importing_ && importing_->undoes && node.id() < firstImported_)
+    throw Error(
+        fmt::format("cannot remove {}: it was there before the import, which could not be undone then ({}"
+                    ".transactionalImport)",
+                    node.path(), path()));
 }
 
 void SceneServer::importScene(std::string_view file, Node& root, const List& arguments) {
   const std::string name(file);
   const Ref<Node> rootAlive(&root);
-  // A file may import others. Only nodes that were created since the start of the outermost import may be flattened.
-  struct Importing {
-    Importing(std::uint64_t& f, std::uint64_t last) : first(f), outermost(f == 0) {
-      if (outermost) first = last + 1;
-    }
-    ~Importing() {
-      if (outermost) first = 0;
-    }
-    std::uint64_t& first;
-    bool outermost;
-  } importing(firstImported_, kernel().lastId());
-  if (importing.outermost) kept_.clear();
-  const std::uint64_t before = kernel().lastId();
-  const auto list = [&] {
-    if (importing.outermost && rootAlive && kernel().lastId() > before)
-      imports_.push_back({name, rootAlive, arguments, before + 1, kernel().lastId()});
-    forgetOldImports();
-  };
-  bool keeps = false;
+  Importing importing(*this);
   try {
-    ISceneImporter& importer = importerFor(name);
-    keeps = importer.keepsTransforms();
-    importer.import(name, root, arguments);
+    runImport(name, root, arguments, importing);
   } catch (...) {
-    list();  // nodes that were created before the error are kept
+    if (importing.undoes)
+      undo_.undo(kernel(), importing.mark);
+    else
+      list(name, rootAlive, arguments, importing);  // nodes that were created before the error are kept
     markModified();
     throw;
   }
-  if (keeps)
-    kept_.emplace_back(before + 1, kernel().lastId());
+  list(name, rootAlive, arguments, importing);
+  markModified();
+}
+
+void SceneServer::list(const std::string& file, const Ref<Node>& root, const List& arguments,
+                       const Importing& importing) {
+  const std::uint64_t before = importing.mark.lastId;
+  if (!importing.outer && root && kernel().lastId() > before)
+    imports_.push_back({file, root, arguments, before + 1, kernel().lastId()});
+  forgetOldImports();
+}
+
+void SceneServer::runImport(const std::string& file, Node& root, const List& arguments, Importing& importing) {
+  const Ref<Node> rootAlive(&root);
+  const Known known = importerFor(file);
+  importing.undoes = undoes(known);
+  known.importer->import(file, root, arguments);
+  if (known.keepsTransforms)
+    kept_.emplace_back(importing.mark.lastId + 1, kernel().lastId());
   else if (flattenTransforms_ && rootAlive)
     spark::flattenTransforms(root, [&](const Leaf& node) {
       return node.id() >= firstImported_ && std::none_of(kept_.begin(), kept_.end(), [&](const auto& ids) {
                return ids.first <= node.id() && node.id() <= ids.second;
              });
     });
-  list();
-  markModified();
 }
 
 /// Robots come and go: imports of which nothing is left are forgotten, at each doubling of the list.

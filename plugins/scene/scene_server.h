@@ -6,6 +6,7 @@
 #include <map>
 
 #include "api/scene.h"
+#include "import_undo.h"
 #include "mesh_library.h"
 
 namespace spark {
@@ -48,6 +49,8 @@ class SceneServer : public Node, public ISceneServer {
   Node* activeScene() override { return scene_.get(); }
   Node& scene() override;
   void importScene(std::string_view file, Node& root, const List& arguments) override;
+  void willChange(Leaf& node) override;
+  void willRemove(Leaf& node) override;
   void markModified() override { ++modified_; }
   std::uint64_t modifiedCount() const override { return modified_; }
   void place() override;
@@ -58,13 +61,21 @@ class SceneServer : public Node, public ISceneServer {
   MeshLibrary& meshes() { return meshes_; }
 
  private:
-  /// The importer of a file.
+  /// The importer of a file, and what it says of the file's text.
   struct Known {
     std::uint64_t stamp;  ///< of the file when its format was recognised
     Ref<ISceneImporter> importer;
+    bool transactional, keepsTransforms;
   };
+  /// A file that is being imported.
+  struct Importing;
   /// The first importer that recognises the format of `file`. Throws Error when there is none.
-  ISceneImporter& importerFor(const std::string& file);
+  Known importerFor(const std::string& file);
+  Found<ISceneImporter> recognise(const std::string& file, const std::string& text) const;
+  void runImport(const std::string& file, Node& root, const List& arguments, Importing& importing);
+  bool undoes(const Known& known) const;
+  /// Adds what the outermost import created to imports().
+  void list(const std::string& file, const Ref<Node>& root, const List& arguments, const Importing& importing);
   void forgetOldImports();
   void createScene(std::string path);
   void defineMesh(std::string mesh, std::vector<std::string> materials) {
@@ -76,8 +87,11 @@ class SceneServer : public Node, public ISceneServer {
 
   std::string scenePath_ = kDefaultScene;
   bool flattenTransforms_ = true;
+  std::string transactionalImport_ = "byLanguage";
   std::uint64_t modified_ = 0;
-  std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the current import; 0: there is none
+  std::uint64_t firstImported_ = 0;  ///< first id of the nodes of the outermost import; 0: there is none
+  Importing* importing_ = nullptr;   ///< the innermost import
+  ImportUndo undo_;
   /// First and last ids of the nodes in the current import whose importers keep their transforms.
   std::vector<std::pair<std::uint64_t, std::uint64_t>> kept_;
   std::vector<Import> imports_;

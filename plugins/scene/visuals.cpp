@@ -69,6 +69,7 @@ void RenderNode::setVisibleValue(Value v) {
 void StaticMesh::describe(Description<StaticMesh>& d) {
   d.doc("A mesh by name, for viewers; the simulation never loads it.");
   d.implements<IVisual>();
+  d.implements<ISceneCalls>();
   d.property("mesh", &StaticMesh::load_).readOnly().doc("Name and parameters of the mesh.");
   d.method("load", &StaticMesh::loadCall)
       .parameters({"mesh", "parameters"})
@@ -83,6 +84,23 @@ void StaticMesh::describe(Description<StaticMesh>& d) {
   d.property("useExternalMesh", &StaticMesh::useExternalMesh_).doc("Viewers show the external mesh instead.");
   d.property("externalMeshName", &StaticMesh::externalMesh_).doc("The external mesh.");
   d.property("externalMeshScale", &StaticMesh::externalScale_).unit("1").doc("Its scale.");
+}
+
+std::vector<SceneCall> StaticMesh::sceneCalls() const {
+  std::vector<SceneCall> calls;
+  // Boxes and spheres have their meshes from the start.
+  if (!load_.empty() && !load_.starts_with("StdUnit")) calls.push_back({"load", {load_}});
+  for (SceneCall& call : callsBesideMesh()) calls.push_back(std::move(call));
+  return calls;
+}
+
+std::vector<SceneCall> StaticMesh::callsBesideMesh() const {
+  std::vector<SceneCall> calls;
+  if (scale_ != Vec3f(1, 1, 1))
+    calls.push_back({"setScale", {shortest(scale_.x()), shortest(scale_.y()), shortest(scale_.z())}});
+  if (!materials_.empty()) calls.push_back({"resetMaterials", List(materials_.begin(), materials_.end())});
+  if (isTransparent()) calls.push_back({"setTransparent", {}});
+  return calls;
 }
 
 void StaticMesh::loadCall(std::string mesh, const std::vector<Value>& parameters) {
@@ -152,6 +170,12 @@ void Capsule::describe(Description<Capsule>& d) {
   d.property("length", &Capsule::length_).unit("m").readOnly().doc("Length without the caps.");
 }
 
+std::vector<SceneCall> Capsule::sceneCalls() const {
+  std::vector<SceneCall> calls{{"setParams", {shortest(radius_), shortest(length_)}}};
+  for (SceneCall& call : callsBesideMesh()) calls.push_back(std::move(call));
+  return calls;
+}
+
 void Capsule::setParams(float radius, float length) {
   radius_ = radius, length_ = length;
   loadMesh(fmt::format("StdCapsule {:g} {:g}", radius, length));
@@ -164,6 +188,12 @@ void Cylinder::describe(Description<Cylinder>& d) {
       .doc("Sets radius and length. Viewers draw a unit cylinder, so set the scale as well.");
   d.property("radius", &Cylinder::radius_).unit("m").readOnly().doc("Radius.");
   d.property("length", &Cylinder::length_).unit("m").readOnly().doc("Length.");
+}
+
+std::vector<SceneCall> Cylinder::sceneCalls() const {
+  std::vector<SceneCall> calls{{"setParams", {shortest(radius_), shortest(length_)}}};
+  for (SceneCall& call : callsBesideMesh()) calls.push_back(std::move(call));
+  return calls;
 }
 
 void Cylinder::setParams(float radius, float length) {

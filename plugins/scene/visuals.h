@@ -3,6 +3,7 @@
 /// Lights, meshes and cameras, for viewers. The simulation only stores their values.
 
 #include "api/scene.h"
+#include "api/scene_calls.h"
 
 namespace spark {
 
@@ -72,7 +73,7 @@ class RenderNode : public SceneNode {
 };
 
 /// A mesh by name, with the materials of its face groups.
-class StaticMesh : public RenderNode, public IVisual {
+class StaticMesh : public RenderNode, public IVisual, public ISceneCalls {
   SPARK_CLASS(StaticMesh, RenderNode)
  public:
   static void describe(Description<StaticMesh>& d);
@@ -85,10 +86,13 @@ class StaticMesh : public RenderNode, public IVisual {
   bool transparent() const override { return isTransparent(); }
   const std::vector<std::string>& materials() const override { return materials_; }
   void setMaterialName(std::size_t i, std::string name) override;
+  std::vector<SceneCall> sceneCalls() const override;
 
  protected:
   /// Sets the mesh: its name and parameters as monitors send them.
   void loadMesh(std::string load);
+  /// Scale, materials and transparency as calls.
+  std::vector<SceneCall> callsBesideMesh() const;
   /// Called when the mesh changed: takes over its materials.
   virtual void meshChanged();
   void setScale(const Vec3f& scale);
@@ -134,6 +138,7 @@ class Sphere : public SingleMatNode {
  public:
   Sphere() { loadMesh("StdUnitSphere"); }
   static void describe(Description<Sphere>& d);
+  std::vector<std::string_view> setByCalls() const override { return {"radius"}; }
 
  private:
   double radius() const { return scale().x(); }
@@ -146,6 +151,7 @@ class Capsule : public SingleMatNode {
  public:
   Capsule() { setParams(1, 1); }
   static void describe(Description<Capsule>& d);
+  std::vector<SceneCall> sceneCalls() const override;
 
  private:
   void setParams(float radius, float length);
@@ -158,6 +164,7 @@ class Cylinder : public SingleMatNode {
  public:
   Cylinder() { setParams(1, 1); }
   static void describe(Description<Cylinder>& d);
+  std::vector<SceneCall> sceneCalls() const override;
 
  private:
   void setParams(float radius, float length);

@@ -2,13 +2,14 @@
 
 #include <numbers>
 
+#include "api/scene_calls.h"
 #include "match_lookup.h"
 
 namespace spark {
 
 /// `(kick elevation power)`: a force on the ball, away from the player, for some steps. The kick of the sphere robots
 /// of 2004, with the formulas of the installed base.
-class KickEffector : public Effector {
+class KickEffector : public Effector, public ISceneCalls {
   SPARK_CLASS(KickEffector, Effector)
  public:
   static void describe(Description<KickEffector>& d) {
@@ -16,6 +17,7 @@ class KickEffector : public Effector {
     d.doc(
         "Kicks the ball away: (kick elevation power), deg and 1..maxPower. A kick lasts some steps; others are ignored "
         "meanwhile.");
+    d.implements<ISceneCalls>();
     d.property("kickMargin", &K::margin_)
         .unit("m")
         .min(0)
@@ -39,6 +41,10 @@ class KickEffector : public Effector {
     d.on<&K::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "kick"; }
+  std::vector<SceneCall> sceneCalls() const override {
+    return {{"setAngleRange", {minAngle_, maxAngle_}},
+            {"setNoiseParams", {sigmaForce_, sigmaTheta_, sigmaPhiEnd_, sigmaPhiMid_}}};
+  }
   std::string act(const Element& action) override {
     NumberArguments read(action);
     double v[2];

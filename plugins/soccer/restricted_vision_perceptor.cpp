@@ -45,6 +45,7 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
   d.implements<ISharedView>();
   d.implements<IEye>();
   d.implements<ISightReader>();
+  d.implements<ISceneCalls>();
   d.on<&V::prepare>(phase::kPrepare);
   d.property("range", &V::range_)
       .unit("m")

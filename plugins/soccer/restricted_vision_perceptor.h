@@ -9,7 +9,11 @@ namespace spark {
 
 /// Vision within a view cone, in the frame of the head or along the axes of the team's frame:
 /// `(See (G1R (pol ...)) (B (pol ...)) (P (team A) (id 3) (rlowerarm (pol ...)) ...))`.
-class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
+class RestrictedVisionPerceptor : public Perceptor,
+                                  public ISharedView,
+                                  public IEye,
+                                  public soccer::SeeReader,
+                                  public ISceneCalls {
   SPARK_CLASS(RestrictedVisionPerceptor, Perceptor)
  public:
   RestrictedVisionPerceptor() { predicateName_ = "See"; }
@@ -22,6 +26,13 @@ class RestrictedVisionPerceptor : public Perceptor, public ISharedView, public I
   double range() override;
   Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) override;
   void sights(std::vector<Sight>& out) override;
+  std::vector<SceneCall> sceneCalls() const override {
+    std::vector<SceneCall> calls = noise_.sceneCalls();
+    calls.push_back({"setViewCones", {cone_[0], cone_[1]}});
+    calls.push_back({"setPanRange", {pan_[0], pan_[1]}});
+    calls.push_back({"setTiltRange", {tilt_[0], tilt_[1]}});
+    return calls;
+  }
   /// Smallest and largest pan of a PanTiltEffector [deg].
   const std::array<int, 2>& panRange() const { return pan_; }
   /// Smallest and largest tilt of a PanTiltEffector [deg].

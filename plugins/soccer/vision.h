@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "api/scene_calls.h"
 #include "soccer_settings.h"
 #include "spark/random.h"
 #include "visible_objects.h"
@@ -61,6 +62,10 @@ class VisionNoise {
     p.distance += random.normal(0, sigmaDistance_) * p.distance / 100;
     p.horizontal += random.normal(0, sigmaTheta_);
     p.vertical += random.normal(0, sigmaPhi_);
+  }
+  /// The calls that set it.
+  std::vector<SceneCall> sceneCalls() const {
+    return {{"addNoise", {on}}, {"setNoiseParams", {sigmaDistance_, sigmaPhi_, sigmaTheta_, error_}}};
   }
   void save(StateWriter& out) const {
     out.write(calibrated_);

@@ -7,7 +7,11 @@ namespace spark {
 
 /// Vision in all directions, by default along the axes of the team's frame:
 /// `(See (F1L (pol 12.1 30.4 -0.3)) ... (B (pol ...)) (P (team A) (id 1) (pol ...)))`.
-class VisionPerceptor : public Perceptor, public ISharedView, public IEye, public soccer::SeeReader {
+class VisionPerceptor : public Perceptor,
+                        public ISharedView,
+                        public IEye,
+                        public soccer::SeeReader,
+                        public ISceneCalls {
   SPARK_CLASS(VisionPerceptor, Perceptor)
  public:
   VisionPerceptor() { predicateName_ = "See"; }
@@ -17,6 +21,7 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
     d.implements<ISharedView>();
     d.implements<IEye>();
     d.implements<ISightReader>();
+    d.implements<ISceneCalls>();
     d.property("range", &V::range_).unit("m").min(0).doc("Objects farther away are not seen; infinite by default.");
     d.property("staticSenseAxis", &V::staticAxis_)
         .doc("Angles are relative to the x axis of the team's frame; false: in the frame of the transform above.");
@@ -39,6 +44,11 @@ class VisionPerceptor : public Perceptor, public ISharedView, public IEye, publi
   double range() override;
   Vec3f placeOf(double distance, double horizontalDeg, double verticalDeg) override;
   void sights(std::vector<Sight>& out) override;
+  std::vector<SceneCall> sceneCalls() const override {
+    std::vector<SceneCall> calls = noise_.sceneCalls();
+    if (!randomNoise_) calls.push_back({"useRandomNoise", {false}});
+    return calls;
+  }
 
  protected:
   void saveState(StateWriter& out) const override { noise_.save(out); }

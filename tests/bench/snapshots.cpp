@@ -45,10 +45,12 @@ void run(benchmark::State& state, const char* world, F&& f) {
 
 void registerSnapshots() {
   for (const auto& [name, world] : {std::pair{"1", "rest1"}, {"22", "rest22"}}) {
-    benchmark::RegisterBenchmark((std::string("snapshot/take/") + name).c_str(), [world](benchmark::State& state) {
+    benchmark::RegisterBenchmark((std::string("snapshot/take/") + name).c_str(), [world =
+                                                                                      world](benchmark::State& state) {
       run(state, world, [](Episode& e) { e.snapshots.take(e.start, false); });
     })->Unit(benchmark::kMicrosecond);
-    benchmark::RegisterBenchmark((std::string("snapshot/restore/") + name).c_str(), [world](benchmark::State& state) {
+    benchmark::RegisterBenchmark((std::string("snapshot/restore/") + name).c_str(), [world = world](
+                                                                                        benchmark::State& state) {
       run(state, world, [](Episode& e) { e.snapshots.restore(e.start); });
     })->Unit(benchmark::kMicrosecond);
   }

@@ -1,11 +1,11 @@
-// OBJ files and their materials, as cameras read them. What the reader accepts has whole triangles and no material that
-// stands for two parts.
+// OBJ files and their materials, as cameras and viewers show them. What the reader accepts has whole triangles and no
+// material that stands for two parts.
 #include <cstdint>
 #include <cstdlib>
 #include <optional>
 #include <set>
 
-#include "../../plugins/camera/mesh.h"
+#include "../../plugins/meshes/visual_obj.h"
 #include "spark/error.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
@@ -15,9 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return name.ends_with(".absent") ? std::nullopt : std::optional(bytes);
   };
   try {
-    const spark::camera::Mesh mesh = spark::camera::readObj("models/a.obj", bytes, find);
+    const spark::meshes::VisualMesh mesh = spark::meshes::readVisualObj("models/a.obj", bytes, find);
     std::set<std::string> materials;
-    for (const spark::camera::MeshPart& p : mesh.parts)
+    for (const spark::meshes::MeshPart& p : mesh.parts)
       if (p.vertices.empty() || p.vertices.size() % 3 != 0 || !materials.insert(p.material).second) std::abort();
     if (mesh.parts.empty()) std::abort();
   } catch (const spark::Error&) {

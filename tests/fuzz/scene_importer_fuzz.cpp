@@ -2,7 +2,7 @@
 //
 // Input: one byte of switches, then chunks that end with a zero byte: the file a.rsg, the file b.rsg (which a.rsg may
 // import), and arguments. For any input, the import succeeds or throws an Error, within its limits, and the scene can
-// be removed.
+// be removed. An import of a file of version 0.2 that fails leaves as many nodes as before.
 
 #include <cstdlib>
 #include <map>
@@ -89,7 +89,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   host.files->files.clear();
   ++host.files->round;
-  host.files->files["a.rsg"] = (switches & 1 ? "(RSG 0 1)" : "") + chunks[0];
+  const bool ours = (switches & 64) != 0;
+  host.files->files["a.rsg"] = (ours ? "(RSG 0 2)" : switches & 1 ? "(RSG 0 1)" : "") + chunks[0];
   if (chunks.size() > 1) host.files->files["b.rsg"] = (switches & 2 ? "(RSG 0 1)" : "") + chunks[1];
   List arguments;
   for (std::size_t i = 2; i < chunks.size(); ++i) arguments.emplace_back(chunks[i]);
@@ -100,9 +101,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   Node& scene = host.server->scene();
   for (int twice = 0; twice < 2; ++twice) {
+    const std::size_t before = count(scene);
     try {
       host.server->importScene("a.rsg", scene, arguments);
     } catch (const Error&) {
+      if (ours && count(scene) != before) std::abort();
     }
     if (count(scene) > static_cast<std::size_t>(kMaxNodes) * 2) std::abort();
     host.server->place();

@@ -2,13 +2,15 @@
 import re
 
 from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say
+from acceptance.common import tests as ctest
 
 PAGE = ROOT / "docs/papers.md"
-TEST = re.compile(r'`(test-[a-z0-9-]+) "([^"]+)"`')
+TEST = re.compile(r'`(test-[a-z0-9-]+|browser-[a-z-]+)(?: "([^"]+)")?`')
 
 
 def sections():
-    """(title, rows) of the page; a row is (claim, tests), each test a program and a pattern of its cases."""
+    """(title, rows) of the page; a row is (claim, tests), each test a program and a pattern of its cases, or a story of the
+    browser and ""."""
     found = []
     for line in PAGE.read_text().splitlines():
         if line.startswith("## "):
@@ -20,7 +22,10 @@ def sections():
 
 
 def shown(program, pattern):
-    """True if the pattern names cases of the program and all of them pass. A comma would end a pattern of Catch2."""
+    """True if the pattern names cases of the program and all of them pass, or if the story passes or cannot run here. A
+    comma would end a pattern of Catch2."""
+    if not pattern:
+        return ctest(program)[1] != FAIL
     say(f'{program} "{pattern}"')
     tests = BIN.parent / "tests"
     done = run([tests / program, pattern.replace(",", "\\,"), "--warn", "NoTests"], cwd=ROOT)

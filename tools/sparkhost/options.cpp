@@ -111,6 +111,14 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--at", out.at, "With --from: not from a later state than at this simulated time [s]")
       ->type_name("SECONDS")
       ->needs(from);
+  app.add_option("--convert", out.convert,
+                 "Write a scene file of any language as one of Spark's own, (RSG 0 2), and end; --config: one "
+                 "that builds what the file needs, such as variables (default convert.lua)")
+      ->type_name("IN OUT.rsg")
+      ->multi_option_policy(CLI::MultiOptionPolicy::Throw)
+      ->expected(2)
+      ->excludes("--check")
+      ->excludes(from);
   app.add_flag("--histogram", out.histogram, "Print a table of the delay and duration of cycles to stderr at the end");
   app.add_flag("--list-plugins", out.listPlugins, "Print the plugins that were found, and end")->excludes("--config");
   app.add_option("--describe", out.describe, "Print the description of a class, and end")
@@ -125,6 +133,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   try {
     app.parse(argc, argv);
     for (const std::string& s : sets) out.overrides.push_back(splitOverride(s));
+    if (!out.convert.empty() && out.config.empty()) out.config = "convert.lua";
     if (out.config.empty() && out.from.empty() && !out.listPlugins && out.describe.empty())
       throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {

@@ -31,7 +31,8 @@ struct Options {
   std::optional<std::uint64_t> seed;
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "info";
-  std::string describe;  ///< --describe: name of a class; "": not given
+  std::string describe;              ///< --describe: name of a class; "": not given
+  std::vector<std::string> convert;  ///< --convert: the file to convert and the file to write; empty: not given
   bool check = false, listPlugins = false, histogram = false;
   std::string hashes;          ///< --hashes: file for the hashes of every `hashEvery`-th cycle; "": none
   std::int64_t hashEvery = 1;  ///< --hash-every

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "convert.h"
 #include "crash_report.h"
 #include "describe.h"
 #include "hang_watch.h"
@@ -107,6 +108,7 @@ int run(int argc, char** argv) {
     refuseSameFile(options.hashes, options.from, "what the run goes on from");
     refuseSameFile(options.record, options.hashes, "the file of the hashes");
     if (!options.from.empty()) options = recorded.emplace(options.from).options(options);
+    if (!options.convert.empty()) return convert(options, options.convert[0], options.convert[1]);
     host.emplace(options);
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());

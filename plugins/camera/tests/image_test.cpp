@@ -3,7 +3,6 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
-#include "../mesh.h"
 #include "spark/error.h"
 
 using namespace spark;
@@ -14,14 +13,6 @@ std::string base64(std::string_view bytes) {
   std::string out;
   appendBase64(bytes, out);
   return out;
-}
-
-/// The files of a test.
-FindFile among(std::map<std::string, std::string> files) {
-  return [files = std::move(files)](const std::string& name) -> std::optional<std::string> {
-    const auto found = files.find(name);
-    return found == files.end() ? std::nullopt : std::optional(found->second);
-  };
 }
 }  // namespace
 
@@ -58,51 +49,4 @@ TEST_CASE("what is no PNG file is refused") {
   Picture p{PictureKind::colour, 16, 16, std::vector<std::uint8_t>(768, 77), {}};
   const std::string file = writePng(p);
   CHECK_THROWS_AS(readPng(std::string_view(file).substr(0, file.size() / 2)), Error);
-}
-
-TEST_CASE("an OBJ file has parts by material, in alphabetical order, with colours and textures of its MTL file") {
-  const std::string obj =
-      "# a mesh\nmtllib things.mtl\nv 0 0 0\nv 1 0 0\nv 1 0 1\nv 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvn 0 -1 0\n"
-      "usemtl wood\nf 1/1/1 2/2/1 3/3/1\nusemtl iron\nf 1//1 3//1 4//1\n";
-  const std::string mtl =
-      "newmtl wood\nKa 0.1 0.2 0.3\nKd 0.4 0.5 0.6\nKs 0.7 0.8 0.9\nNs 20\nmap_Kd wood.png\nnewmtl iron\nKd 1 0 0\nd "
-      "0.5\n";
-  const Mesh mesh = readObj("models/thing.obj", obj, among({{"materials/things.mtl", mtl}, {"textures/wood.png", ""}}));
-  REQUIRE(mesh.parts.size() == 2);
-  CHECK(mesh.parts[0].material == "iron");
-  CHECK(mesh.parts[1].material == "wood");
-  REQUIRE(mesh.parts[1].vertices.size() == 3);
-  const Vertex& v = mesh.parts[1].vertices[2];
-  CHECK((v.position[0] == 1 && v.position[1] == 0 && v.position[2] == 1));
-  CHECK((v.normal[1] == -1 && v.faceNormal[1] == -1));
-  CHECK((v.place[0] == 1 && v.place[1] == 1));
-  for (const MeshMaterial& m : mesh.materials) {
-    if (m.name == "wood") {
-      CHECK(m.texture == "textures/wood.png");
-      CHECK(m.look.ambient.g == Approx(0.2));
-      CHECK(m.look.diffuse.b == Approx(0.6));
-      CHECK(m.look.specular.r == Approx(0.7));
-      CHECK(m.look.shininess == Approx(20));
-    } else if (m.name == "iron") {
-      CHECK(m.texture.empty());
-      CHECK(m.look.diffuse.a == Approx(0.5));
-    }
-  }
-}
-
-TEST_CASE("a mesh without triangles is refused, and no file of the machine is read") {
-  CHECK_THROWS_WITH(readObj("models/a.obj", "v 0 0 0\n", among({})), Catch::Contains("models/a.obj"));
-  const Mesh mesh =
-      readObj("models/a.obj", "mtllib /etc/passwd\nv 0 0 0\nv 1 0 0\nv 1 0 1\nusemtl x\nf 1 2 3\n", among({}));
-  CHECK(mesh.parts.size() == 1);
-}
-
-TEST_CASE("a face of vertices that are not there is refused; indices below 0 count backwards") {
-  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 1 0 1\n";
-  for (const char* const face : {"f 1 2 4\n", "f 0 1 2\n", "f -4 -2 -1\n"})
-    CHECK_THROWS_WITH(readObj("models/a.obj", vertices + face, among({})),
-                      Catch::Contains("models/a.obj") && Catch::Contains("expected a face of its 3 vertices"));
-  CHECK_THROWS_WITH(readObj("models/a.obj", vertices + "f 1//1 2//1 3//1\n", among({})),
-                    Catch::Contains("expected a face of its 0 normals, found number 1"));
-  CHECK(readObj("models/a.obj", vertices + "f -3 -2 -1\n", among({})).parts[0].vertices[2].position[2] == 1);
 }

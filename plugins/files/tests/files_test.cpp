@@ -98,6 +98,11 @@ TEST_CASE("a link inside the folder is followed, and one that leads out is refus
   fs::create_symlink(outside.path() / "secret", f.folder.path() / "out");
   fs::create_directory_symlink(outside.path(), f.folder.path() / "outdir");
   CHECK(f.server->read("inside") == "r");
+  CHECK(f.server->hostFile("inside") == fs::canonical(f.folder.path() / "real"));
+  CHECK_THROWS_AS(f.server->hostFile("out"), Error);
+  CHECK_THROWS_AS(f.server->hostFile("outdir/secret"), Error);
+  CHECK_FALSE(f.server->hostFile("none"));
+  CHECK_THROWS_AS(f.server->hostFile("../up"), Error);
   CHECK(f.errorOf("out").find("a link leads out") != std::string::npos);
   CHECK(f.errorOf("outdir/secret").find("a link leads out") != std::string::npos);
 }

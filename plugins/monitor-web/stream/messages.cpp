@@ -30,10 +30,19 @@ void writeTransform(JsonWriter& json, const NodeDescription& node) {
   json.endArray();
 }
 
-void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible) {
+void writeColor(JsonWriter& json, const Color& c) { json.numbers(std::array{c.r, c.g, c.b, c.a}); }
+
+/// The path of a resource, as member `name` if there is one.
+void writeLink(JsonWriter& json, const char* name, AssetKind kind, const std::string& resource, const AssetLink& link) {
+  if (!link || resource.empty()) return;
+  if (const std::string path = link(kind, resource); !path.empty()) json.member(name, path);
+}
+
+void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible, const AssetLink& link) {
   json.member("kind", "mesh");
   if (node.kind == FrameNode::Kind::singleMaterial) json.member("single", true);
   json.member("load", node.load);
+  writeLink(json, "file", AssetKind::mesh, node.load, link);
   json.key("scale").numbers(std::array{node.scale.x(), node.scale.y(), node.scale.z()});
   if (!node.materials.empty()) {
     json.key("materials").beginArray();
@@ -44,7 +53,7 @@ void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible) {
   json.member("visible", visible);
 }
 
-void writeNode(JsonWriter& json, const NodeDescription& node, bool visible) {
+void writeNode(JsonWriter& json, const NodeDescription& node, bool visible, const AssetLink& link) {
   json.beginObject().member("parent", node.parent);
   switch (node.kind) {
     case FrameNode::Kind::transform:
@@ -52,12 +61,12 @@ void writeNode(JsonWriter& json, const NodeDescription& node, bool visible) {
       break;
     case FrameNode::Kind::light:
       json.member("kind", "light").key("colors").beginArray();
-      for (const Color& c : node.colors) json.numbers(std::array{c.r, c.g, c.b, c.a});
+      for (const Color& c : node.colors) writeColor(json, c);
       json.endArray();
       break;
     case FrameNode::Kind::mesh:
     case FrameNode::Kind::singleMaterial:
-      writeMesh(json, node, visible);
+      writeMesh(json, node, visible, link);
       break;
   }
   json.endObject();
@@ -123,12 +132,28 @@ std::string helloMessage(double step, double rate, double history) {
   return out;
 }
 
-std::string sceneMessage(const Snapshot& s, std::uint32_t shape) {
+void writeLook(JsonWriter& json, const IMaterial::Look& look, const std::string& texture, const AssetLink& link) {
+  writeColor(json.key("diffuse"), look.diffuse);
+  writeColor(json.key("ambient"), look.ambient);
+  writeColor(json.key("specular"), look.specular);
+  writeColor(json.key("emission"), look.emission);
+  json.member("shininess", look.shininess);
+  if (!texture.empty()) json.member("texture", texture);
+  writeLink(json, "picture", AssetKind::texture, texture, link);
+}
+
+std::string sceneMessage(const Snapshot& s, std::uint32_t shape, const AssetLink& link) {
   std::string out;
   JsonWriter json(out, kWebJson);
   json.beginObject().member("type", "scene").member("shape", shape).key("nodes").beginArray();
   const auto& nodes = s.scene->nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) writeNode(json, nodes[i], s.visible[i]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) writeNode(json, nodes[i], s.visible[i], link);
+  json.endArray().key("materials").beginArray();
+  for (const MaterialDescription& m : s.scene->materials) {
+    json.beginObject().member("name", m.name);
+    writeLook(json, m.look, m.texture, link);
+    json.endObject();
+  }
   json.endArray().key("local").beginArray();
   for (const Matrix& m : s.transforms)
     for (int k = 0; k < 16; ++k) json.value(m.data()[k]);

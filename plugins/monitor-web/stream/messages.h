@@ -2,6 +2,7 @@
 /// \file
 /// The JSON text messages to viewers. README.md lists them.
 
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -18,8 +19,15 @@ void writeElement(JsonWriter& json, const Element& element);
 /// `{"type":"hello",...}`. `step`: simulated seconds per cycle; `rate`: default number of frames a second; `history`:
 /// simulated seconds that the host keeps.
 std::string helloMessage(double step, double rate, double history);
-/// `{"type":"scene",...}` with the matrices of the snapshot. `snapshot.scene` must be set; `shape`: its number.
-std::string sceneMessage(const Snapshot& snapshot, std::uint32_t shape);
+/// What viewers fetch besides the scene message.
+enum class AssetKind { mesh, texture };
+/// The path where viewers fetch a resource that the scene names; "": nowhere.
+using AssetLink = std::function<std::string(AssetKind kind, const std::string& resource)>;
+/// `{"type":"scene",...}` with the matrices of the snapshot. `snapshot.scene` must be set; `shape`: its number; `link`:
+/// empty if nothing can be fetched, as with recordings.
+std::string sceneMessage(const Snapshot& snapshot, std::uint32_t shape, const AssetLink& link = {});
+/// Writes colours, shininess and texture of a material as members of the open object.
+void writeLook(JsonWriter& json, const IMaterial::Look& look, const std::string& texture, const AssetLink& link);
 /// `{"type":"environment",...,"full":true}`: all entries except events.
 std::string fullEnvironmentMessage(const Snapshot& snapshot);
 /// `{"type":"event",...}`. `time`: simulated seconds.

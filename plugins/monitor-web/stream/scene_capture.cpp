@@ -1,6 +1,7 @@
 #include "scene_capture.h"
 
 #include <Eigen/Geometry>
+#include <set>
 
 #include "api/physics.h"
 
@@ -59,6 +60,24 @@ NodeDescription describeNode(const FrameNode& node) {
   return out;
 }
 
+/// The materials that the nodes name, as far as the host has them, and the one that stands for all others.
+std::vector<MaterialDescription> describeMaterials(const MonitorFrame& frame) {
+  const Node* folder = nullptr;
+  std::set<std::string_view> names{"default"};
+  for (const FrameNode& node : frame.nodes) {
+    if (!node.visual) continue;
+    if (!folder && node.visual->leaf().isLinked())
+      folder = node.visual->leaf().kernel().root().find<Node>(IMaterial::kFolder);
+    for (const std::string& name : node.visual->materials()) names.insert(name);
+  }
+  std::vector<MaterialDescription> out;
+  for (const std::string_view name : names)
+    if (const Leaf* child = folder ? folder->child(name) : nullptr)
+      if (const auto material = child->as<IMaterial>())
+        out.push_back({std::string(name), material->look(), material->texture()});
+  return out;
+}
+
 }  // namespace
 
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame) {
@@ -71,6 +90,7 @@ std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame)
     scene->nodes.back().parent = depth > 0 ? lastAtDepth[depth - 1] : -1;
     lastAtDepth[depth] = static_cast<int>(scene->nodes.size()) - 1;
   }
+  scene->materials = describeMaterials(frame);
   return scene;
 }
 

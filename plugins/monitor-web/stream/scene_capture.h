@@ -6,7 +6,7 @@
 
 namespace spark::web {
 
-/// Describes the nodes of a frame: paths, meshes, shapes of colliders. Allocates.
+/// Describes the nodes of a frame: paths, meshes, shapes of colliders; and their materials. Allocates.
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame);
 
 /// Copies matrices, visibilities and the environment of a frame, all but its events. Allocates only if there are more

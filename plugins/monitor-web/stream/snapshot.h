@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "api/appearance.h"
 #include "api/monitor.h"
 
 namespace spark::web {
@@ -31,9 +32,17 @@ struct NodeDescription {
   std::array<Color, 3> colors{};  ///< lights: diffuse, ambient, specular
 };
 
+/// A material that meshes of the scene name.
+struct MaterialDescription {
+  std::string name;
+  IMaterial::Look look;
+  std::string texture;  ///< resource name; "": none
+};
+
 /// The part of a scene that stays the same while MonitorFrame::shape does.
 struct SceneDescription {
   std::vector<NodeDescription> nodes;
+  std::vector<MaterialDescription> materials;  ///< those that the host has, in alphabetical order
 };
 
 /// One instant. It is reused: its buffers keep their capacity.

@@ -3,11 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "api/appearance.h"
 #include "api/monitor.h"
 #include "api/phases.h"
 #include "fake_scene.h"
 #include "fake_tape.h"
 #include "frame_reader.h"
+#include "temporary_folder.h"
 #include "test_support.h"
 #include "web_client.h"
 
@@ -44,6 +46,16 @@ class Match : public Node, public IMonitorItem, public ITrainer {
   bool goal = false;
 };
 
+/// A material with a texture.
+class Painted : public Leaf, public IMaterial {
+  SPARK_CLASS(Painted, Leaf)
+ public:
+  static void describe(Description<Painted>& d) { d.implements<IMaterial>(); }
+  Look look() const override { return {{0.25f, 0, 0, 1}, {0.5f, 0, 0, 1}, {0, 0, 1, 1}, {0, 0.5f, 0, 1}, 64}; }
+  const std::string& texture() const override { return name; }
+  std::string name = "textures/red.png";
+};
+
 /// A simulation whose time does not advance.
 class StillClock : public Node, public ISimulation {
   SPARK_CLASS(StillClock, Node)
@@ -65,8 +77,16 @@ struct RunningServer : TestHost {
   RunningServer() {
     makeFakeScene(kernel);
     kernel.registerClass<Match>();
+    kernel.registerClass<Painted>();
     kernel.plugins().use("monitor");
     kernel.plugins().use("monitor-web");
+    kernel.plugins().use("files");
+    folder.write("models/thing.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl paint\nf 1 2 3\n");
+    folder.write("textures/red.png", "\x89PNG\r\n\x1a\n and so on");
+    folder.write("secret.png", "\x89PNG\r\n\x1a\n");
+    setProperty(kernel.create<Node>("FileServer", "/sys/server/file").create("DirectoryFileSystem", "share"), "path",
+                folder.path().string());
+    kernel.create<Node>("BaseNode", "/sys/server/material").create("Painted", "naowhite");
     auto& root = kernel.root().require<Node>("/usr/scene");
     robot = &root.create<Transform>("Transform", "robot");
     robot->create<Transform>("Transform", "head").create<FakeVisual>("FakeVisual", "mesh").names = {"matLeft",
@@ -115,6 +135,7 @@ struct RunningServer : TestHost {
       }
     });
   }
+  TemporaryFolder folder;
   Transform* robot;
   unsigned short port = 0;
   double time = 0;  ///< s, of the last cycle; valid while the simulation is stopped
@@ -132,10 +153,11 @@ TEST_CASE("Viewers see the scene move and send requests, and a referee changes t
   REQUIRE(viewer.watch() == 101);
   REQUIRE(referee.watch() == 101);
   CHECK(jsonWith(viewer, "\"hello\"")["protocol"] == 1);
-  const Json scene = jsonWith(viewer, "\"scene\"");
+  Json scene = jsonWith(viewer, "\"scene\"");
   REQUIRE(scene["nodes"].size() == 3);
   CHECK(scene["nodes"][0]["path"] == "/usr/scene/robot");
   CHECK(scene["nodes"][1]["parent"] == 0);
+  scene["nodes"][2].erase("file");
   CHECK(
       scene["nodes"][2] ==
       Json::parse(
@@ -239,6 +261,51 @@ TEST_CASE("Pages are answered while the match runs") {
   const Json status = Json::parse(WebClient::status(server.port));
   CHECK(status["type"] == "status");
   CHECK(status["spectators"] == 0);
+}
+
+TEST_CASE("A scene has its materials, and viewers fetch its meshes and textures and nothing else") {
+  RunningServer server;
+  WebClient viewer(server.port), client(server.port);
+  REQUIRE(viewer.watch() == 101);
+  const Json scene = jsonWith(viewer, "\"scene\"");
+  REQUIRE(scene["materials"].size() == 1);
+  const Json& material = scene["materials"][0];
+  CHECK(material["name"] == "naowhite");
+  CHECK(material["diffuse"] == Json::parse("[0.5,0,0,1]"));
+  CHECK(material["ambient"] == Json::parse("[0.25,0,0,1]"));
+  CHECK(material["specular"] == Json::parse("[0,0,1,1]"));
+  CHECK(material["emission"] == Json::parse("[0,0.5,0,1]"));
+  CHECK(material["shininess"] == 64);
+  CHECK(material["texture"] == "textures/red.png");
+
+  const std::string mesh = "/" + scene["nodes"][2]["file"].get<std::string>(),
+                    picture = "/" + material["picture"].get<std::string>();
+  const auto triangles = client.get(mesh);
+  CHECK(triangles.status == 200);
+  CHECK_THAT(triangles.head, Contains("immutable") && Contains("application/octet-stream"));
+  CHECK_THAT(triangles.body, Contains(R"({"material":"paint","corners":3})"));
+  CHECK(client.get(mesh, "", "HEAD").head.find("Content-Length: " + std::to_string(triangles.body.size())) !=
+        std::string::npos);
+  const auto texture = client.get(picture);
+  CHECK_THAT(texture.head, Contains("image/png") && Contains("nosniff"));
+  CHECK(texture.body.size() == 18);
+  const std::string folder = picture.substr(0, picture.rfind('/') + 1);
+  for (const std::string& other : {folder + "7", folder + "../../secret.png", folder + "secret.png",
+                                   std::string("/texture/secret.png"), std::string("/mesh/..%2f..%2fetc%2fpasswd")})
+    CHECK(client.get(other).status == 404);
+}
+
+TEST_CASE("A server that is removed while a viewer waits for a mesh does not wait for it") {
+  RunningServer server;
+  WebClient viewer(server.port), client(server.port);
+  REQUIRE(viewer.watch() == 101);
+  const Json scene = jsonWith(viewer, "\"scene\"");
+  server.stop();
+  client.sendRaw("GET /" + scene["nodes"][2]["file"].get<std::string>() +
+                 " HTTP/1.1\r\nHost: 127.0.0.1:" + std::to_string(server.port) + "\r\n\r\n");
+  auto& servers = server.kernel.root().require<Node>("/sys/server");
+  servers.remove(*servers.child("web"));
+  CHECK(client.waitForClose().empty());
 }
 
 TEST_CASE("The server may be removed while viewers watch, and a new one may be created") {

@@ -55,7 +55,7 @@ function(test_viewer)
     message("skipped: the viewer is not built")
     return()
   endif()
-  execute_process(COMMAND ${CMAKE_COMMAND} -E env NODE_OPTIONS=--require=./tests/helpers/patience.cjs
+  execute_process(COMMAND ${CMAKE_COMMAND} -E env SPARK_SOURCES=${SOURCE}/../../.. NODE_OPTIONS=--require=./tests/helpers/patience.cjs
     ${NODE} ${FOLDER}/node_modules/vitest/vitest.mjs run WORKING_DIRECTORY ${FOLDER} RESULT_VARIABLE failed)
   if(failed)
     message(FATAL_ERROR "Unit tests of the viewer failed")

@@ -75,6 +75,7 @@ void Builder::compareTimesteps(Node& root) {
 void Builder::setOptions(Node& root) {
   Leaf* const world = worldAround(root);
   if (!world) return;
+  ISceneServer* const scenes = root.kernel().root().find<ISceneServer>();
   struct Old {
     Leaf* node;
     const char* property;
@@ -84,6 +85,7 @@ void Builder::setOptions(Node& root) {
   for (const Option& o : model_.options) {
     Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
     if (!node) continue;
+    if (scenes) scenes->willChange(*node);
     try {
       before.push_back({node, o.property, getProperty(*node, o.property)});
       setProperty(*node, o.property, o.value);

@@ -5,7 +5,7 @@
 using namespace spark;
 using namespace spark::test;
 
-TEST_CASE("a file is accepted only with a valid header and version 0 1") {
+TEST_CASE("a file is accepted only with a valid header and version 0 1, or 0 2") {
   SceneHost h;
   for (const char* good :
        {"(RSG 0 1)(nd Probe)", "(RubySceneGraph 0 1)((nd Probe))", "; first\n(RSG 0 1) (nd Probe (setName x))"}) {
@@ -14,8 +14,8 @@ TEST_CASE("a file is accepted only with a valid header and version 0 1") {
     CHECK_NOTHROW(h.import("a.rsg"));
   }
   CHECK(h.scene->children().size() == 3);
-  for (const char* bad : {"(RSG 0 2)(nd Probe)", "(RSG 1 1)()", "(RSG 0)()", "(XSG 0 1)()", "RSG", "()()", "", "<xml/>",
-                          "((RSG) 0 1)()"}) {
+  for (const char* bad : {"(RSG 0 3)(nd Probe)", "(RDS 0 2)()", "(RSG 1 1)()", "(RSG 0)()", "(XSG 0 1)()", "RSG",
+                          "()()", "", "<xml/>", "((RSG) 0 1)()"}) {
     INFO(bad);
     h.write("a.rsg", bad);
     CHECK_THROWS_WITH(h.import("a.rsg"), Catch::StartsWith("a.rsg:") && Catch::Contains("expected"));
@@ -183,7 +183,7 @@ class ListImporter : public Node, public ISceneImporter {
     d.doc("Imports lists of files.");
     d.implements<ISceneImporter>();
   }
-  bool recognises(std::string_view text) const override { return text.starts_with("list\n"); }
+  bool recognises(std::string_view text, std::string_view) const override { return text.starts_with("list\n"); }
   void import(std::string_view file, Node& root, const List&) override {
     std::istringstream lines(kernel().root().require<IFileServer>("/sys/server/file").read(file));
     std::string line;

@@ -21,12 +21,33 @@ export interface SceneNode {
   path?: string;
   /// Transforms: the colliders; missing in logs and if there are none.
   shapes?: Shape[];
+  /// Lights: diffuse, ambient and specular colour.
+  colors?: [Colour, Colour, Colour];
   /// Meshes: "models/naohead.obj", "StdUnitBox", "StdCapsule 0.015 0.08"; scale; material names in the mesh's order.
   load?: string;
   scale?: [number, number, number];
   materials?: string[];
+  /// Meshes: where the host serves the file; missing in recordings and logs, and for meshes that are no files.
+  file?: string;
+  /// What the host knows of each of `materials`; null: nothing. Missing in logs and older recordings.
+  looks?: (Material | null)[];
+  /// Meshes: all parts have the first material.
+  single?: boolean;
   transparent?: boolean;
   visible?: boolean;
+}
+
+/// A material, as in OpenGL's lighting equation.
+export interface Material {
+  name: string;
+  diffuse: Colour;
+  ambient: Colour;
+  specular: Colour;
+  emission: Colour;
+  /// Exponent of highlights, 0..128.
+  shininess: number;
+  /// Where the host serves its texture; missing without one.
+  picture?: string;
 }
 
 export type Side = "left" | "right";

@@ -27,8 +27,13 @@ export function sameNodes(a: SceneNode[], b: SceneNode[]): boolean {
 
 function sameNode(a: SceneNode, b: SceneNode): boolean {
   return (
-    a.kind === b.kind && a.parent === b.parent && a.load === b.load && a.transparent === b.transparent && a.path === b.path && sameList(a.scale, b.scale) && sameList(a.materials, b.materials)
+    a.kind === b.kind && a.parent === b.parent && a.load === b.load && a.transparent === b.transparent && a.path === b.path && a.file === b.file &&
+    sameList(a.scale, b.scale) && sameList(a.materials, b.materials) && sameText(a.looks, b.looks) && sameText(a.colors, b.colors)
   );
+}
+
+function sameText(a: unknown, b: unknown): boolean {
+  return JSON.stringify(a) === JSON.stringify(b);
 }
 
 function sameList<T>(a: T[] | undefined, b: T[] | undefined): boolean {

@@ -1,4 +1,4 @@
-import type { SceneNode, Shape } from "../model";
+import type { Colour, Material, SceneNode, Shape } from "../model";
 import { Poses } from "./poses";
 
 /// Parses the scene message of the stream. Returns null if it is invalid.
@@ -19,12 +19,14 @@ export interface SceneMessage {
 }
 
 export function readScene(message: Record<string, unknown>): SceneMessage | null {
-  const { shape, nodes, local } = message;
+  const { shape, nodes, local, materials } = message;
   if (typeof shape !== "number" || !Array.isArray(nodes) || !Array.isArray(local) || nodes.length > kMostNodes) return null;
   const read: SceneNode[] = [];
+  const looks = readMaterials(materials);
   for (const node of nodes) {
     const one = readNode(node, read);
     if (!one) return null;
+    if (one.materials && looks.size > 0) one.looks = one.materials.map((name) => looks.get(name) ?? looks.get("default") ?? null);
     read.push(one);
   }
   const poses = new Poses(read.length);
@@ -49,13 +51,38 @@ function readNode(from: unknown, before: SceneNode[]): SceneNode | null {
     if (!from.shapes.every(isShape)) return null;
     node.shapes = from.shapes;
   }
+  const { colors } = from;
+  if (node.kind === "light" && Array.isArray(colors) && colors.length === 3 && colors.every(isColour)) node.colors = colors as [Colour, Colour, Colour];
   if (node.kind !== "mesh") return node;
+  if (isAsset(from.file)) node.file = from.file;
   node.load = typeof from.load === "string" ? from.load : "";
   node.visible = from.visible !== false;
   if (isNumbers(from.scale, 3)) node.scale = from.scale as [number, number, number];
   if (Array.isArray(from.materials)) node.materials = from.materials.map(String);
+  if (from.single === true) node.single = true;
   if (from.transparent === true) node.transparent = true;
   return node;
+}
+
+/// Materials of scene messages and mesh files, by name; damaged ones are left out.
+export function readMaterials(from: unknown): Map<string, Material> {
+  const out = new Map<string, Material>();
+  for (const each of Array.isArray(from) ? from : []) {
+    if (!isRecord(each) || typeof each.name !== "string" || typeof each.shininess !== "number") continue;
+    const { name, diffuse, ambient, specular, emission, shininess, picture } = each;
+    if (!isColour(diffuse) || !isColour(ambient) || !isColour(specular) || !isColour(emission)) continue;
+    out.set(name, { name, diffuse, ambient, specular, emission, shininess, ...(isAsset(picture) && { picture }) });
+  }
+  return out;
+}
+
+/// A path of this page's own host, never another address.
+function isAsset(from: unknown): from is string {
+  return typeof from === "string" && /^(mesh|texture)\/[0-9a-f]+\/\d+$/.test(from);
+}
+
+function isColour(from: unknown): from is Colour {
+  return isNumbers(from, 4);
 }
 
 function isShape(from: unknown): from is Shape {

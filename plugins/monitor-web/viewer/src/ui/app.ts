@@ -1,8 +1,8 @@
 /// The interface of the application for its panels.
 import type { LiveSource, Playback, ReplaySource, Source, World } from "../model";
-import type { CameraMode, Quality, Stage, Theme } from "../view/stage";
+import type { CameraMode, Lights, Quality, Stage, Theme } from "../view/stage";
 
-export type { CameraMode, Quality, Stage, Theme };
+export type { CameraMode, Lights, Quality, Stage, Theme };
 export type Tone = "plain" | "good" | "bad" | "goal" | "foul";
 
 /// The selection: a robot, or any node of the tree.

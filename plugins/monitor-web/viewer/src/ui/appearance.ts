@@ -1,6 +1,6 @@
 /// Applies the chosen theme, team colours and quality to the page and the stage.
 import { css, inkOn, type Rgb, rgb } from "../view/palette";
-import type { CameraMode, Quality, Stage, Theme } from "./app";
+import type { CameraMode, Lights, Quality, Stage, Theme } from "./app";
 import { keepSettings, kPalettes, type Palette, paletteFor, type Settings } from "./settings";
 
 const rgbOf = (hex: string): Rgb => rgb(parseInt(hex.slice(1), 16));
@@ -16,6 +16,7 @@ export class Appearance {
     this.still.addEventListener("change", () => (stage.reducedMotion = this.still.matches));
     stage.reducedMotion = this.still.matches;
     stage.quality = settings.quality;
+    stage.lights = settings.lights;
     stage.labels = settings.labels;
     stage.camera.mode = settings.view;
     this.showTheme();
@@ -56,6 +57,12 @@ export class Appearance {
     this.settings.quality = this.stage.quality = this.stage.quality === "flat" ? "quality" : "flat";
     keepSettings(this.settings);
     return this.settings.quality;
+  }
+
+  switchLights(): Lights {
+    this.settings.lights = this.stage.lights = this.stage.lights === "scene" ? "plain" : "scene";
+    keepSettings(this.settings);
+    return this.settings.lights;
   }
 
   switchLabels(): boolean {

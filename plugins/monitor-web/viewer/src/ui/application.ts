@@ -62,6 +62,7 @@ export class Application implements App {
   private readonly tools = new Tools({
     camera: (mode) => this.setCamera(mode),
     quality: () => this.switchQuality(),
+    lights: () => this.switchLights(),
     labels: () => this.switchLabels(),
     colours: () => this.switchColours(),
     theme: () => this.appearance.switchTheme(),
@@ -193,6 +194,11 @@ export class Application implements App {
     this.showTools();
   }
 
+  switchLights(): void {
+    this.toast(this.appearance.switchLights() === "scene" ? "Lights of the scene, if it has any" : "Plain light");
+    this.showTools();
+  }
+
   switchLabels(): void {
     this.appearance.switchLabels();
     this.showTools();
@@ -292,7 +298,7 @@ export class Application implements App {
 
   private showTools(): void {
     const { stage, appearance } = this;
-    this.tools.update({ camera: stage.camera.mode, quality: stage.quality, labels: stage.labels, colours: appearance.palette.name, theme: appearance.theme });
+    this.tools.update({ camera: stage.camera.mode, quality: stage.quality, lights: stage.lights, labels: stage.labels, colours: appearance.palette.name, theme: appearance.theme });
   }
 
   /// The panels are beside the picture, or in a sheet of their own on a phone.

@@ -24,6 +24,7 @@ function looks(app: Application): Binding[] {
     ...kCameras.map(({ mode, name, key }) => ({ combo: key, title: name, group, run: () => app.setCamera(mode) })),
     { combo: "backspace", title: "The whole field", group, run: () => app.stage.camera.home() },
     { combo: "g", title: "With or without shadows", group, run: () => app.switchQuality() },
+    { combo: "z", title: "Lights of the scene, or plain light", group, run: () => app.switchLights() },
     { combo: "l", title: "Labels", group, run: () => app.switchLabels() },
     { combo: "c", title: "Team colours", group, run: () => app.switchColours() },
     { combo: "m", title: "Dark or light", group, run: () => app.appearance.switchTheme() },

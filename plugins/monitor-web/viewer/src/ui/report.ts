@@ -29,6 +29,11 @@ export interface Report {
   frames: number;
   camera: string;
   quality: string;
+  /// "scene" or "plain": what lights the picture.
+  lights: string;
+  /// Mesh files and textures of the host that are shown.
+  meshes: number;
+  textures: number;
   score: [number, number];
   /// The protocol name of the mode.
   playMode: string;
@@ -61,6 +66,8 @@ export function reportOf(app: Application): Report {
     frames: app.frames,
     camera: app.stage.camera.mode,
     quality: app.stage.quality,
+    lights: app.stage.litBy,
+    ...app.stage.loaded,
     score: [numberOf(world.environment, "score_left", 0), numberOf(world.environment, "score_right", 0)],
     playMode: modeName(world.environment),
     events: world.events.length,

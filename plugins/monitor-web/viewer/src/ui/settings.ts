@@ -1,5 +1,5 @@
 /// The user's settings, stored in the browser.
-import type { CameraMode, Quality, Theme } from "./app";
+import type { CameraMode, Lights, Quality, Theme } from "./app";
 
 export interface Palette {
   name: string;
@@ -34,13 +34,14 @@ export function paletteFor(chosen: number, leftTeam: string, rightTeam: string):
 export interface Settings {
   theme: Theme | "system";
   quality: Quality;
+  lights: Lights;
   labels: boolean;
   view: CameraMode;
   /// Index in kPalettes.
   palette: number;
 }
 
-export const kDefaults: Settings = { theme: "system", quality: "flat", labels: true, view: "broadcast", palette: 0 };
+export const kDefaults: Settings = { theme: "system", quality: "flat", lights: "scene", labels: true, view: "broadcast", palette: 0 };
 
 const kKey = "spark-viewer";
 
@@ -57,6 +58,7 @@ export function settingsFrom(text: string | null): Settings {
   return {
     theme: one(kept.theme, ["system", "dark", "light"], kDefaults.theme),
     quality: one(kept.quality, ["flat", "quality"], kDefaults.quality),
+    lights: one(kept.lights, ["scene", "plain"], kDefaults.lights),
     labels: one(kept.labels, [true, false], kDefaults.labels),
     view: one(kept.view, ["orbit", "broadcast", "head", "top"], kDefaults.view),
     palette: one(kept.palette, [...kPalettes.keys()], kDefaults.palette),

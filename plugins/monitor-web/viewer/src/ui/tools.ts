@@ -1,5 +1,5 @@
 /// The toolbar for cameras, appearance, logs and help; on a phone it is in a sheet.
-import type { CameraMode, Quality, Theme } from "./app";
+import type { CameraMode, Lights, Quality, Theme } from "./app";
 import { h, setAttribute, setText } from "./dom";
 import { changeIcon, icon, type IconName } from "./icons";
 
@@ -13,6 +13,7 @@ export const kCameras: readonly { mode: CameraMode; name: string; key: string }[
 export interface ToolActions {
   camera(mode: CameraMode): void;
   quality(): void;
+  lights(): void;
   labels(): void;
   colours(): void;
   theme(): void;
@@ -23,6 +24,7 @@ export interface ToolActions {
 export interface ToolState {
   camera: CameraMode;
   quality: Quality;
+  lights: Lights;
   labels: boolean;
   colours: string;
   theme: Theme;
@@ -44,6 +46,7 @@ function tool(testid: string, name: string, key: string, picture: IconName, run:
 export class Tools {
   private readonly cameras: Map<CameraMode, Tool>;
   private readonly quality: Tool;
+  private readonly lights: Tool;
   private readonly labels: Tool;
   private readonly colours: Tool;
   private readonly theme: Tool;
@@ -52,6 +55,7 @@ export class Tools {
   constructor(actions: ToolActions) {
     this.cameras = new Map(kCameras.map(({ mode, name, key }) => [mode, tool(`camera-${mode}`, name, key, mode, () => actions.camera(mode))]));
     this.quality = tool("quality", "Shadows", "g", "quality", actions.quality);
+    this.lights = tool("lights", "Lights of the scene", "z", "lamp", actions.lights);
     this.labels = tool("labels", "Labels", "l", "labels", actions.labels);
     this.colours = tool("colours", "Team colours", "c", "colours", actions.colours);
     this.theme = tool("theme", "Dark or light", "m", "dark", actions.theme);
@@ -63,7 +67,7 @@ export class Tools {
       { class: "tools card scrolls", role: "toolbar", "aria-label": "View", "aria-orientation": "vertical" },
       ...buttons(...this.cameras.values()),
       h("hr"),
-      ...buttons(this.quality, this.labels, this.colours, this.theme),
+      ...buttons(this.quality, this.lights, this.labels, this.colours, this.theme),
       h("hr"),
       ...buttons(open, help),
     );
@@ -72,6 +76,7 @@ export class Tools {
   update(state: ToolState): void {
     for (const [mode, { button }] of this.cameras) setAttribute(button, "aria-pressed", String(mode === state.camera));
     setAttribute(this.quality.button, "aria-pressed", String(state.quality === "quality"));
+    setAttribute(this.lights.button, "aria-pressed", String(state.lights === "scene"));
     setAttribute(this.labels.button, "aria-pressed", String(state.labels));
     this.rename(this.colours, `Team colours: ${state.colours}`, "C");
     this.rename(this.theme, state.theme === "dark" ? "Light colours" : "Dark colours", "M");

@@ -3,7 +3,27 @@ import type { FieldSizes } from "./field_sizes";
 import { approach, ease, Follower } from "./motion";
 import { Orbit } from "./orbit";
 import { Pose } from "./pose";
-import type { CameraMode, CameraView } from "./stage";
+import type { CameraMode } from "./stage";
+
+/// The camera mode. Changes are smooth moves.
+export interface CameraView {
+  /// "head" is the view of the selected robot (of the one nearest to the ball if none is selected). Dragging switches
+  /// from "broadcast" and "head" to "orbit".
+  mode: CameraMode;
+  /// Called after every change of mode.
+  onmode: ((mode: CameraMode) => void) | null;
+  /// Switches modes immediately instead of flying.
+  reducedMotion: boolean;
+  /// Handles a keydown or keyup. Returns true if it moved the camera: W A S D pan, Q E rotate, R F tilt, + - zoom
+  /// (while a key is held, the camera keeps moving).
+  key(event: KeyboardEvent): boolean;
+  /// Releases all held keys (the window lost the focus).
+  release(): void;
+  /// Moves to the initial view of the whole field.
+  home(): void;
+  /// Looks at this point from `distance` [m], in orbit mode.
+  lookAt(point: Vector3, distance?: number): void;
+}
 
 /// The input of the cameras.
 export interface Sights {

@@ -1,4 +1,4 @@
-import type { Side } from "../model";
+import type { Material, Side } from "../model";
 import type { Theme } from "./stage";
 
 /// A colour as it is written to the screen (sRGB), each 0..1.
@@ -42,26 +42,33 @@ export function inkOn(colour: Rgb): Rgb {
 /// Parts of robots without a team colour.
 export const robot = { shell: rgb(0xf2f4f5), joint: rgb(0x3a4048), sole: rgb(0x555d66), visor: rgb(0x15181c), eye: rgb(0x7fe3ff) };
 
-/// Materials of scenes, less saturated than the pure colours that their names suggest.
-const materials: Record<string, Rgb> = {
-  matYellow: rgb(0xf2c53d), matOrange: rgb(0xee7f33), matRed: rgb(0xd6483f), matRedGlow: rgb(0xff6a55), matMagenta: rgb(0xc44a9e),
-  matBlue: rgb(0x3c6fd1), matLightBlue: rgb(0x63b4e6), matGreen: rgb(0x4fa05a), matWhite: rgb(0xf1f2f3), matGrey: rgb(0x8b939c),
-  matDarkGrey: rgb(0x3a4048), matBall: rgb(0xf5f5f5), matTrack: rgb(0xa5714d), matGrass: rgb(0x3e8e4a), matTeam: noTeam, matNum: rgb(0xf1f2f3),
-  naowhite: robot.shell, naoblack: robot.visor, naogrey: robot.joint,
+/// The colours of lua/materials.lua, for logs and recordings that do not contain those of their host.
+export const usualMaterials: Record<string, Rgb> = {
+  matYellow: [1, 1, 0], matOrange: [1, 0.03, 0], matRed: [1, 0, 0], matRedGlow: [1, 0, 0], matMagenta: [1, 0, 0.75], matBlue: [0, 0, 1], matLightBlue: [0, 0.75, 1],
+  matGreen: [0.1, 0.6, 0.1], matSelect: [1, 0, 0], matWhite: [1, 1, 1], matGrey: [0.2, 0.2, 0.2], matDarkGrey: [0.05, 0.05, 0.05], matBall: [1, 1, 1], matTrack: [0.6, 0.3, 0.2],
+  matGrass: [0.1, 0.5, 0.1], matTeam: [0.5, 0.5, 0.5], matNum: [0.9, 0.9, 0.9], naoblack: [0.1, 0.1, 0.1], naogrey: [0.5, 0.5, 0.5], naowhite: [1, 1, 1],
 };
 
+const nameless = rgb(0x8b939c);
 const others = [0x6f8fb0, 0xb08f6f, 0x7fa37a, 0xa37a9c, 0x8d86c4, 0xbba35f].map(rgb);
 
-/// The colour of a material. An unknown name is mapped to one of a few muted colours, always to the same one.
-export function materialColour(name: string | undefined, teams = usualTeams): Rgb {
-  if (name === undefined) return materials.matGrey!;
-  const known = materials[name];
+/// True for materials in the colour of a team.
+export function isOfTeam(material: string): boolean {
+  return /^mat(Left|Right)/.test(material);
+}
+
+/// The colour of a material: that of the team, or what the host says. An unknown name is mapped to one of a few muted
+/// colours, always to the same one.
+export function materialColour(name: string | undefined, teams = usualTeams, look: Material | null = null): Rgb {
+  if (name?.startsWith("matLeft")) return teams.left;
+  if (name?.startsWith("matRight")) return teams.right;
+  if (look) return [look.diffuse[0], look.diffuse[1], look.diffuse[2]];
+  if (!name) return nameless;
+  const known = usualMaterials[name];
   if (known) return known;
   const coded = /^rgb([0-9a-f]{6})$/.exec(name); // what importers make of a file's colours
   if (coded) return rgb(parseInt(coded[1]!, 16));
-  if (name.startsWith("matLeft")) return teams.left;
-  if (name.startsWith("matRight")) return teams.right;
-  if (name.startsWith("matNum")) return materials.matNum!;
+  if (name.startsWith("matNum")) return usualMaterials.matNum!;
   let hash = 0;
   for (const letter of name) hash = (hash * 31 + letter.charCodeAt(0)) >>> 0;
   return others[hash % others.length]!;

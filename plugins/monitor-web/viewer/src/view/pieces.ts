@@ -1,8 +1,10 @@
-import type { Robot, SceneNode, Shape, World } from "../model";
+import type { Material, Robot, SceneNode, Shape, World } from "../model";
 import { compose } from "./affine";
 import { dress, isSceneryMesh } from "./costume";
 import type { Form } from "./forms";
-import { materialColour, robot as robotColours, teamColour, usualTeams, type Rgb, type TeamColours } from "./palette";
+import type { MeshFile } from "./mesh_file";
+import type { Dress, Model } from "./models";
+import { isOfTeam, materialColour, robot as robotColours, teamColour, usualTeams, type Rgb, type TeamColours } from "./palette";
 
 /// One solid: a form in the frame of a transform.
 export interface Piece {
@@ -18,6 +20,8 @@ export interface Piece {
   rounding: number;
   /// null: the colour of walls in the surroundings.
   colour: Rgb | null;
+  /// What the host says about its material, if anything.
+  look?: Material | null;
 }
 
 /// A number painted on a robot: a square of `size` metres in the x-z plane of `matrix`, seen from -y.
@@ -37,19 +41,28 @@ export interface Mark {
 
 export interface Picture {
   pieces: Piece[];
+  models: Model[];
   decals: Decal[];
   marks: Mark[];
   /// For each node the index of its robot in World.robots, or -1.
   robotOf: Int32Array;
 }
 
+/// The files that are loaded: of a mesh, and for a solid with a texture its triangles. null: show it without.
+export interface Files {
+  mesh(path: string): MeshFile | null;
+  solid(shape: Shape): MeshFile | null;
+}
+
+const noFiles: Files = { mesh: () => null, solid: () => null };
+
 /// Grey boxes longer than this are walls [m].
 const wallLength = 5;
 
 /// The pieces of a scene: robots with their decorations, and other visible meshes by their names. Ground, goals and
 /// ball are drawn elsewhere.
-export function makePicture(world: World, teams: TeamColours = usualTeams): Picture {
-  return new PictureMaker(world, teams).picture;
+export function makePicture(world: World, teams: TeamColours = usualTeams, files: Files = noFiles): Picture {
+  return new PictureMaker(world, teams, files).picture;
 }
 
 class PictureMaker {
@@ -57,8 +70,8 @@ class PictureMaker {
   /// Transforms whose shapes a mesh represents.
   private readonly covered = new Set<number>();
 
-  constructor(private readonly world: World, private readonly teams: TeamColours) {
-    this.picture = { pieces: [], decals: [], marks: [], robotOf: findRobots(world) };
+  constructor(private readonly world: World, private readonly teams: TeamColours, private readonly files: Files) {
+    this.picture = { pieces: [], models: [], decals: [], marks: [], robotOf: findRobots(world) };
     world.nodes.forEach((node, index) => {
       if (node.kind === "mesh" && node.parent >= 0 && !belongsTo(world, index, world.ball)) this.addMesh(node, index);
     });
@@ -74,8 +87,29 @@ class PictureMaker {
     if (isSceneryMesh(name)) return;
     const robot = this.world.robots[this.picture.robotOf[index]!] ?? null;
     const standard = standardShape(name, sizes.map(Number), mesh.scale ?? [1, 1, 1]);
+    const file = mesh.file ? this.files.mesh(mesh.file) : standard && mesh.looks?.[0]?.picture ? this.files.solid(standard) : null;
+    if (file) return this.addFile(file, mesh, index, robot, standard ? [1, 1, 1] : (mesh.scale ?? [1, 1, 1]));
     if (standard) this.addStandard(standard, mesh, index, robot);
     else this.addModel(name, mesh, index, robot);
+  }
+
+  /// Shows the triangles of a file, in the mesh's materials or else in the file's own.
+  private addFile(file: MeshFile, mesh: SceneNode, index: number, robot: Robot | null, scale: readonly [number, number, number]): void {
+    this.covered.add(this.carrier(mesh.parent));
+    const dresses = file.parts.map(({ material }, part): Dress => {
+      const k = mesh.single ? 0 : part, name = mesh.materials?.[k] ?? material;
+      const look = file.materials.get(name) ?? mesh.looks?.[k] ?? null;
+      return { ...this.dressOf(name, robot, look), opacity: mesh.transparent ? (look?.diffuse[3] ?? 1) : 1 };
+    });
+    const [x, y, z] = scale, { min, max } = file.bounds;
+    const middle = (k: "x" | "y" | "z", by: number) => ((min[k] + max[k]) / 2) * by;
+    const extent = (k: "x" | "y" | "z", by: number) => ((max[k] - min[k]) / 2) * Math.abs(by);
+    this.picture.models.push({
+      file, node: mesh.parent, mesh: index, dresses,
+      matrix: [x, 0, 0, 0, 0, y, 0, 0, 0, 0, z, 0, 0, 0, 0, 1],
+      centre: [middle("x", x), middle("y", y), middle("z", z)],
+      half: [extent("x", x), extent("y", y), extent("z", z)],
+    });
   }
 
   private addStandard(shape: Shape, mesh: SceneNode, index: number, robot: Robot | null): void {
@@ -91,7 +125,8 @@ class PictureMaker {
       return;
     }
     const isWall = !robot && mesh.materials?.[0] === "matGrey" && shape.kind === "box" && Math.max(...shape.size) > wallLength;
-    this.add(shape, mesh.parent, index, isWall ? null : this.colourOf(mesh, robot));
+    const { colour, look } = this.dressOf(mesh.materials?.[0], robot, mesh.looks?.[0]);
+    this.add(shape, mesh.parent, index, isWall ? null : colour, undefined, isWall ? null : look);
     if (isSphereOfRobot) this.addBelt(shape.size[0]!, mesh.parent, index);
   }
 
@@ -107,7 +142,8 @@ class PictureMaker {
     const shapes = this.world.nodes[part]!.shapes ?? [standardShape("StdUnitBox", [], mesh.scale ?? [0.1, 0.1, 0.1])!];
     const dressed = robot && dress(name, shapes, robot, mesh.materials ?? [], this.teams);
     if (!dressed) {
-      for (const shape of shapes) this.add(shape, part, index, this.colourOf(mesh, robot));
+      const { colour, look } = this.dressOf(mesh.materials?.[0], robot, mesh.looks?.[0]);
+      for (const shape of shapes) this.add(shape, part, index, colour, undefined, look);
       return;
     }
     for (const { shape, colour, rounding } of dressed.parts) this.add(shape, part, index, colour, rounding);
@@ -120,13 +156,14 @@ class PictureMaker {
     return at;
   }
 
-  private colourOf(mesh: SceneNode, robot: Robot | null): Rgb {
-    const name = mesh.materials?.[0];
-    return name === "matTeam" && robot ? teamColour(robot.side, this.teams) : materialColour(name, this.teams);
+  /// Team colours are those of the page, whatever the host's material is.
+  private dressOf(name: string | undefined, robot: Robot | null, look: Material | null = null): Omit<Dress, "opacity"> {
+    if (name === "matTeam" && robot) return { colour: teamColour(robot.side, this.teams), look: null };
+    return { colour: materialColour(name, this.teams, look), look: name && isOfTeam(name) ? null : look };
   }
 
-  private add(shape: Shape, node: number, mesh: number, colour: Rgb | null, rounding?: number): void {
-    this.picture.pieces.push(pieceOf(shape, node, mesh, colour, rounding));
+  private add(shape: Shape, node: number, mesh: number, colour: Rgb | null, rounding?: number, look: Material | null = null): void {
+    this.picture.pieces.push({ ...pieceOf(shape, node, mesh, colour, rounding), look });
   }
 }
 

@@ -1,21 +1,26 @@
 import { Group, Matrix4, type PerspectiveCamera, Vector3 } from "three";
 import type { World } from "../model";
+import type { Assets } from "./assets";
 import { Ball } from "./ball";
 import { type FieldSizes, fieldSizes } from "./field_sizes";
 import { goalPieces, hasNetGoals, isInGoal } from "./goals";
 import { Ground } from "./ground";
 import { Labels } from "./labels";
+import { Lamps } from "./lamps";
+import { Models } from "./models";
 import { type Rgb, rgb, robot as robotColours, surroundings, type TeamColours } from "./palette";
 import { makePicture, type Picture } from "./pieces";
 import { Solids } from "./solids";
 import { Spots } from "./spots";
-import type { Quality, Theme } from "./stage";
+import type { Lights, Quality, Theme } from "./stage";
+import { TexturedSolids } from "./textured_solids";
 import { WorldMatrices } from "./world_matrices";
 
 export interface Looks {
   quality: Quality;
   theme: Theme;
   teams: TeamColours;
+  lights: Lights;
 }
 
 /// The shadow of a moving object: its node, and the radius of the disc [m].
@@ -35,9 +40,13 @@ export class Scenery {
   readonly robotOf: Int32Array;
   /// Half the edge of the visible scene [m].
   readonly extent: number;
+  /// The lights that light it; null: plain light.
+  readonly lamps: Lamps | null;
   private readonly picture: Picture;
   private readonly ground: Ground;
   private readonly solids: Solids;
+  private readonly models: Models;
+  private readonly textured = new TexturedSolids();
   private readonly labels: Labels;
   private readonly shadows: Spots | null;
   private readonly rings: Spots;
@@ -46,19 +55,21 @@ export class Scenery {
   private readonly hidden: Uint8Array;
   private selected = -1;
 
-  constructor(private readonly world: World, private readonly looks: Looks, screen: Vector3) {
+  constructor(private readonly world: World, private readonly looks: Looks, screen: Vector3, assets: Assets) {
     const around = surroundings[looks.theme];
     this.matrices.rebuild(world.nodes);
     this.matrices.update(world.local);
     this.field = fieldSizes(world.environment);
-    this.picture = makePicture(world, looks.teams);
+    this.picture = makePicture(world, looks.teams, { mesh: path => assets.mesh(path), solid: shape => this.textured.of(shape) });
     this.robotOf = this.picture.robotOf;
     this.hidden = new Uint8Array(world.nodes.length);
     const netGoals = this.field !== null && hasNetGoals(world);
     if (this.field) this.bleachGoals(this.field);
     const goals = this.field && netGoals ? goalPieces(this.field, world.nodes.length) : [];
     this.ground = new Ground(this.field, netGoals, looks.quality, around, screen);
-    this.solids = new Solids([...this.picture.pieces, ...goals], looks.quality, around);
+    this.lamps = looks.lights === "scene" ? Lamps.of(world, looks.quality) : null;
+    this.solids = new Solids([...this.picture.pieces, ...goals], looks.quality, around, this.lamps);
+    this.models = new Models(this.picture.models, looks.quality, around, this.lamps, assets);
     this.ball = new Ball(looks.quality, around);
     this.ball.setRadius(world);
     this.blobs = this.findBlobs();
@@ -67,8 +78,9 @@ export class Scenery {
     this.labels = new Labels(world.robots, this.picture.decals, looks.teams, screen);
     this.tops = Float32Array.from(world.robots, robot => this.topOf(robot.head));
     this.extent = this.reach();
-    this.group.add(this.ground.group, this.solids.group, this.ball.group, this.rings.mesh, this.labels.group);
+    this.group.add(this.ground.group, this.solids.group, this.models.group, this.ball.group, this.rings.mesh, this.labels.group);
     if (this.shadows) this.group.add(this.shadows.mesh);
+    if (this.lamps) this.group.add(this.lamps.group);
     this.updateFrame();
   }
 
@@ -87,6 +99,8 @@ export class Scenery {
     matrices.update(world.local);
     for (let node = 0; node < hidden.length; node++) hidden[node] = world.nodes[node]!.visible === false ? 1 : 0;
     this.solids.update(matrices.values, hidden);
+    this.models.update(matrices.values, hidden);
+    this.lamps?.update(matrices.values);
     this.labels.update(matrices.values, this.tops);
     this.ball.update(matrices.values, world.ball, world.time);
     this.layShadows();
@@ -108,13 +122,14 @@ export class Scenery {
     nodes.forEach((each, index) => (below[index] = index === node || (each.parent >= 0 && below[each.parent]) ? 1 : 0));
     // A robot keeps its colours; a ring marks it instead.
     const isRobot = this.world.robots.some(robot => robot.node === node);
-    this.solids.highlight(index => !isRobot && below[index] === 1);
+    for (const part of [this.solids, this.models]) part.highlight(index => !isRobot && below[index] === 1);
     this.layRings();
   }
 
   /// The first node that a ray hits, and its distance; null: none.
   hit(origin: Vector3, direction: Vector3, pixel: number): { node: number; distance: number } | null {
-    const found = this.solids.hit(origin.toArray(), direction.toArray(), pixel);
+    const hits = [this.solids.hit(origin.toArray(), direction.toArray(), pixel), this.models.hit(origin.toArray(), direction.toArray())];
+    const found = hits.reduce((a, b) => (a && b ? (b.distance < a.distance ? b : a) : (a ?? b)), null);
     const { ball } = this;
     if (this.world.ball < 0) return found;
     const along = toBall.subVectors(ball.position, origin).dot(direction);
@@ -135,7 +150,7 @@ export class Scenery {
   }
 
   dispose(): void {
-    for (const part of [this.ground, this.solids, this.ball, this.labels, this.shadows, this.rings]) part?.dispose();
+    for (const part of [this.ground, this.solids, this.models, this.textured, this.lamps, this.ball, this.labels, this.shadows, this.rings]) part?.dispose();
   }
 
   /// Goals made of plates are yellow and blue in scenes, which would look like team colours.
@@ -185,13 +200,13 @@ export class Scenery {
   }
 
   private solidsAt(node: number): boolean {
-    return this.picture.pieces.some(piece => piece.node === node);
+    return [...this.picture.pieces, ...this.picture.models].some(piece => piece.node === node);
   }
 
   /// A robot with limbs has one shadow around its torso and one per foot; other objects that are not too large have one
   /// per piece.
   private findBlobs(): Blob[] {
-    const { pieces } = this.picture;
+    const pieces = [...this.picture.pieces, ...this.picture.models.map(model => ({ ...model, form: "model" }))];
     const blobs = new Map<number, Blob>();
     for (const piece of pieces) {
       const robot = this.world.robots[this.picture.robotOf[piece.node]!];
@@ -216,7 +231,7 @@ export class Scenery {
     if (this.field) return Math.max(this.field.length, this.field.width) / 2;
     const { values } = this.matrices;
     let far = 1;
-    for (const { node, half } of this.picture.pieces) far = Math.max(far, Math.hypot(values[16 * node + 12]!, values[16 * node + 13]!) + Math.min(half[0], half[1]));
+    for (const { node, half } of [...this.picture.pieces, ...this.picture.models]) far = Math.max(far, Math.hypot(values[16 * node + 12]!, values[16 * node + 13]!) + Math.min(half[0], half[1]));
     return Math.min(far, 30);
   }
 }

@@ -2,11 +2,12 @@ import { DynamicDrawUsage, Group, InstancedBufferAttribute, InstancedMesh, type 
 import { multiply } from "./affine";
 import type { Form } from "./forms";
 import { Frustum } from "./frustum";
+import { baseOf, type Lamps } from "./lamps";
 import { levelFor, levels, tooSmall } from "./levels";
 import type { Surroundings } from "./palette";
 import type { Piece } from "./pieces";
 import { hitBox } from "./ray";
-import { fineSolidMaterial, flatSolidMaterial, solidDepthMaterial } from "./shade";
+import { fineSolidMaterial, flatSolidMaterial, solidDepthMaterial, solidDistanceMaterial } from "./shade";
 import type { Quality } from "./stage";
 
 /// One form at one level of detail: a draw call with the pieces that use it.
@@ -14,32 +15,38 @@ class Batch {
   readonly mesh: InstancedMesh;
   private readonly sizes: InstancedBufferAttribute;
   private readonly tints: InstancedBufferAttribute;
+  private readonly bases: InstancedBufferAttribute;
 
-  constructor(form: Form, level: number, capacity: number, material: Material, depth: Material | null) {
+  constructor(form: Form, level: number, capacity: number, material: Material, shadows: { depth: Material; distance: Material } | null) {
     const geometry = levels[form][level]!.make();
     this.sizes = new InstancedBufferAttribute(new Float32Array(4 * capacity), 4);
     this.tints = new InstancedBufferAttribute(new Float32Array(4 * capacity), 4);
+    this.bases = new InstancedBufferAttribute(new Float32Array(3 * capacity), 3);
     this.mesh = new InstancedMesh(geometry, material, capacity);
-    for (const attribute of [this.sizes, this.tints, this.mesh.instanceMatrix]) attribute.setUsage(DynamicDrawUsage);
+    for (const attribute of [this.sizes, this.tints, this.bases, this.mesh.instanceMatrix]) attribute.setUsage(DynamicDrawUsage);
     geometry.setAttribute("size", this.sizes);
     geometry.setAttribute("tint", this.tints);
+    geometry.setAttribute("base", this.bases);
     this.mesh.frustumCulled = this.mesh.matrixAutoUpdate = false;
-    this.mesh.castShadow = this.mesh.receiveShadow = depth !== null;
-    if (depth) this.mesh.customDepthMaterial = depth;
+    this.mesh.castShadow = this.mesh.receiveShadow = shadows !== null;
+    if (!shadows) return;
+    this.mesh.customDepthMaterial = shadows.depth;
+    this.mesh.customDistanceMaterial = shadows.distance;
   }
 
   begin(): void {
     this.mesh.count = 0;
   }
 
-  add(matrices: Float32Array, sizes: Float32Array, tints: Float32Array, piece: number): void {
+  add(matrices: Float32Array, sizes: Float32Array, tints: Float32Array, bases: Float32Array, piece: number): void {
     const n = this.mesh.count++;
-    const matrix = this.mesh.instanceMatrix.array, size = this.sizes.array, tint = this.tints.array;
+    const matrix = this.mesh.instanceMatrix.array, size = this.sizes.array, tint = this.tints.array, base = this.bases.array;
     for (let k = 0; k < 16; k++) matrix[16 * n + k] = matrices[16 * piece + k]!;
     for (let k = 0; k < 4; k++) {
       size[4 * n + k] = sizes[4 * piece + k]!;
       tint[4 * n + k] = tints[4 * piece + k]!;
     }
+    for (let k = 0; k < 3; k++) base[3 * n + k] = bases[3 * piece + k]!;
   }
 
   end(): void {
@@ -48,6 +55,7 @@ class Batch {
     this.upload(this.mesh.instanceMatrix);
     this.upload(this.sizes);
     this.upload(this.tints);
+    this.upload(this.bases);
   }
 
   dispose(): void {
@@ -68,21 +76,23 @@ export class Solids {
   readonly group = new Group();
   private readonly batches: Record<Form, Batch[]>;
   private readonly material: Material;
-  private readonly depth: Material | null;
+  private readonly shadows: { depth: Material; distance: Material } | null;
   private readonly locals: Float32Array;
   private readonly matrices: Float32Array;
   private readonly sizes: Float32Array;
   private readonly tints: Float32Array;
+  private readonly bases: Float32Array;
   private readonly radii: Float32Array;
   private readonly frustum = new Frustum();
 
-  constructor(private readonly pieces: readonly Piece[], private readonly quality: Quality, around: Surroundings) {
-    this.material = quality === "quality" ? fineSolidMaterial() : flatSolidMaterial(around);
-    this.depth = quality === "quality" ? solidDepthMaterial() : null;
+  constructor(private readonly pieces: readonly Piece[], private readonly quality: Quality, around: Surroundings, lamps: Lamps | null) {
+    this.material = quality === "quality" ? fineSolidMaterial() : flatSolidMaterial(around, lamps);
+    this.shadows = quality === "quality" ? { depth: solidDepthMaterial(), distance: solidDistanceMaterial() } : null;
     this.locals = Float32Array.from(pieces.flatMap(piece => piece.matrix));
     this.matrices = new Float32Array(this.locals.length);
     this.sizes = Float32Array.from(pieces.flatMap(piece => [...piece.half, piece.rounding]));
     this.tints = Float32Array.from(pieces.flatMap(piece => [...(piece.colour ?? around.wall), 0]));
+    this.bases = Float32Array.from(pieces.flatMap(({ colour, look }) => [...baseOf(lamps, colour ?? around.wall, look ?? null)]));
     this.radii = Float32Array.from(pieces, ({ form, half }) => (form === "round" ? Math.max(...half) : Math.hypot(...half)));
     this.batches = { block: this.makeBatches("block"), round: this.makeBatches("round"), barrel: this.makeBatches("barrel") };
   }
@@ -114,7 +124,7 @@ export class Solids {
       const pixels = radius / (pixel * depth);
       if (pixels < tooSmall) continue;
       const { form } = this.pieces[n]!;
-      batches[form][levelFor(form, pixels)]!.add(matrices, this.sizes, this.tints, n);
+      batches[form][levelFor(form, pixels)]!.add(matrices, this.sizes, this.tints, this.bases, n);
     }
     for (const form in batches) for (const batch of batches[form as Form]) batch.end();
   }
@@ -141,12 +151,13 @@ export class Solids {
   dispose(): void {
     for (const batch of Object.values(this.batches).flat()) batch.dispose();
     this.material.dispose();
-    this.depth?.dispose();
+    this.shadows?.depth.dispose();
+    this.shadows?.distance.dispose();
   }
 
   private makeBatches(form: Form): Batch[] {
     const capacity = this.pieces.filter(piece => piece.form === form).length;
-    const batches = levels[form].map((_, level) => new Batch(form, level, capacity, this.material, this.depth));
+    const batches = levels[form].map((_, level) => new Batch(form, level, capacity, this.material, this.shadows));
     for (const { mesh } of batches) this.group.add(mesh);
     return batches;
   }

@@ -1,7 +1,8 @@
 import { Group, Matrix4, NeutralToneMapping, PCFShadowMap, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from "three";
 import type { Robot, Source } from "../model";
+import { Assets } from "./assets";
 import { Budget } from "./budget";
-import { Camera, type Sights } from "./camera";
+import { Camera, type CameraView, type Sights } from "./camera";
 import { Controls } from "./controls";
 import { FrameTimes } from "./frame_times";
 import { css, surroundings, type TeamColours, usualTeams } from "./palette";
@@ -10,6 +11,8 @@ import { Sunlight } from "./sunlight";
 
 export type Quality = "flat" | "quality";
 export type Theme = "dark" | "light";
+/// The lights of the scene, or plain, even light. A scene without lights has plain light.
+export type Lights = "scene" | "plain";
 export type CameraMode = "orbit" | "broadcast" | "head" | "top";
 
 /// A clicked object: the node with the shape, the robot that it belongs to (if any), and the position of the hit.
@@ -17,26 +20,6 @@ export interface Pick {
   node: number;
   robot: Robot | null;
   point: Vector3;
-}
-
-/// The camera mode. Changes are smooth moves.
-export interface CameraView {
-  /// "head" is the view of the selected robot (of the one nearest to the ball if none is selected). Dragging switches
-  /// from "broadcast" and "head" to "orbit".
-  mode: CameraMode;
-  /// Called after every change of mode.
-  onmode: ((mode: CameraMode) => void) | null;
-  /// Switches modes immediately instead of flying.
-  reducedMotion: boolean;
-  /// Handles a keydown or keyup. Returns true if it moved the camera: W A S D pan, Q E rotate, R F tilt, + - zoom
-  /// (while a key is held, the camera keeps moving).
-  key(event: KeyboardEvent): boolean;
-  /// Releases all held keys (the window lost the focus).
-  release(): void;
-  /// Moves to the initial view of the whole field.
-  home(): void;
-  /// Looks at this point from `distance` [m], in orbit mode.
-  lookAt(point: Vector3, distance?: number): void;
 }
 
 /// The picture: everything drawn from a World, in a canvas that fills the container.
@@ -59,6 +42,7 @@ export class Stage {
   private readonly rig = new Camera(this.sights);
   private readonly budget = new Budget();
   private readonly observer: ResizeObserver;
+  private readonly assets = new Assets();
   /// Half the canvas size in pixels, and the device pixel ratio.
   private readonly screen = new Vector3(1, 1, 1);
   private renderer: WebGLRenderer;
@@ -66,7 +50,7 @@ export class Stage {
   private sunlight: Sunlight | null = null;
   private source: Source | null = null;
   private scenery: Scenery | null = null;
-  private looks: { quality: Quality; theme: Theme; teams: TeamColours } = { quality: "flat", theme: "dark", teams: usualTeams };
+  private looks: { quality: Quality; theme: Theme; teams: TeamColours; lights: Lights } = { quality: "flat", theme: "dark", teams: usualTeams, lights: "scene" };
   private showLabels = true;
   private showTrail = true;
   private selection: string | number | null = null;
@@ -87,6 +71,7 @@ export class Stage {
     this.overlay.renderOrder = 5;
     this.renderer = this.makeRenderer();
     this.controls = this.makeControls();
+    this.assets.onload = () => this.strike();
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(container);
     this.resize();
@@ -120,6 +105,26 @@ export class Stage {
     if (theme === this.looks.theme) return;
     this.looks = { ...this.looks, theme };
     this.strike();
+  }
+
+  get lights(): Lights {
+    return this.looks.lights;
+  }
+
+  set lights(lights: Lights) {
+    if (lights === this.looks.lights) return;
+    this.looks = { ...this.looks, lights };
+    this.strike();
+  }
+
+  /// What lights the picture now.
+  get litBy(): Lights {
+    return this.scenery?.lamps ? "scene" : "plain";
+  }
+
+  /// Numbers of mesh files and textures of the host that are shown.
+  get loaded(): { meshes: number; textures: number } {
+    return this.assets.count;
   }
 
   get teamColours(): TeamColours {
@@ -165,6 +170,7 @@ export class Stage {
     this.source = source;
     this.selection = null;
     this.strike();
+    this.assets.clear();
     this.seen.scene = -1;
   }
 
@@ -225,6 +231,7 @@ export class Stage {
   dispose(): void {
     this.observer.disconnect();
     this.strike();
+    this.assets.clear();
     this.closeRenderer();
   }
 
@@ -248,14 +255,14 @@ export class Stage {
     const before = this.sights.field;
     const isFirst = this.seen.scene < 0;
     this.strike();
-    this.scenery = new Scenery(world, this.looks, this.screen);
+    this.scenery = new Scenery(world, this.looks, this.screen, this.assets);
     this.scenery.labelled = this.showLabels;
     this.scene.add(this.scenery.group);
     this.sights.field = this.scenery.field;
     this.sights.extent = this.scenery.extent;
     if (isFirst || JSON.stringify(before) !== JSON.stringify(this.scenery.field)) this.rig.reset();
     this.scenery.select(this.selectedNode());
-    if (this.looks.quality === "quality") {
+    if (this.looks.quality === "quality" && !this.scenery.lamps) {
       this.sunlight = new Sunlight(this.looks.theme);
       this.scene.add(this.sunlight.group);
     }

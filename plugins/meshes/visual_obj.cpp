@@ -1,6 +1,7 @@
-#include "mesh.h"
+#include "visual_obj.h"
 
 #include <fmt/format.h>
+#include <tiny_obj_loader.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -10,25 +11,13 @@
 #include <sstream>
 #include <streambuf>
 
-#define TINYOBJLOADER_IMPLEMENTATION
-#include <tiny_obj_loader.h>
-
 #include "spark/error.h"
 
-namespace spark::camera {
+namespace spark::meshes {
 
 namespace {
 
 std::string fileOf(std::string_view path) { return std::string(path.substr(path.find_last_of("/\\") + 1)); }
-
-/// The resource of a file that a mesh names: in `folder`, or beside the mesh; "" if there is none.
-std::string resourceOf(std::string_view named, const char* folder, const std::string& mesh, const FindFile& find) {
-  const std::string file = fileOf(named);
-  std::string below = fmt::format("{}/{}", folder, file);
-  if (find(below)) return below;
-  std::string beside = mesh.substr(0, mesh.size() - fileOf(mesh).size()) + file;
-  return find(beside) ? beside : "";
-}
 
 /// A stream over bytes that stay where they are.
 struct Bytes : std::streambuf {
@@ -87,7 +76,7 @@ class Builder {
     for (const tinyobj::index_t& c : corners) position(c);
     for (std::size_t i = 2; i < corners.size(); ++i) addTriangle({corners[0], corners[i - 1], corners[i]});
   }
-  Mesh take(const std::string& resource, const FindFile& find) {
+  VisualMesh take(const std::string& resource, const FindFile& find) {
     for (const tinyobj::material_t& m : materials_) out_.materials.push_back(materialOf(m, resource, find));
     for (auto& [material, part] : parts_)
       if (!part.vertices.empty()) out_.parts.push_back(std::move(part));
@@ -126,7 +115,7 @@ class Builder {
   std::vector<tinyobj::material_t> materials_;
   std::map<std::string, MeshPart> parts_;  ///< by material
   MeshPart* part_ = nullptr;               ///< of the faces that follow
-  Mesh out_;
+  VisualMesh out_;
 };
 
 tinyobj::callback_t callbacks() {
@@ -146,7 +135,15 @@ tinyobj::callback_t callbacks() {
 
 }  // namespace
 
-Mesh readObj(const std::string& resource, const std::string& bytes, const FindFile& find) {
+std::string resourceOf(std::string_view named, const char* folder, const std::string& mesh, const FindFile& find) {
+  const std::string file = fileOf(named);
+  std::string below = fmt::format("{}/{}", folder, file);
+  if (find(below)) return below;
+  std::string beside = mesh.substr(0, mesh.size() - fileOf(mesh).size()) + file;
+  return find(beside) ? beside : "";
+}
+
+VisualMesh readVisualObj(const std::string& resource, const std::string& bytes, const FindFile& find) {
   Builder builder;
   Materials materials(resource, find);
   Bytes buffer(bytes);
@@ -157,9 +154,9 @@ Mesh readObj(const std::string& resource, const std::string& bytes, const FindFi
   } catch (const std::exception& e) {
     throw Error(fmt::format("mesh '{}' cannot be read: {}", resource, e.what()));
   }
-  Mesh out = builder.take(resource, find);
+  VisualMesh out = builder.take(resource, find);
   if (out.parts.empty()) throw Error(fmt::format("mesh '{}': expected triangles, found none", resource));
   return out;
 }
 
-}  // namespace spark::camera
+}  // namespace spark::meshes

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Meshes from OBJ files.
+/// Meshes as they look: triangles with normals, places on textures, and materials.
 
 #include <functional>
 #include <optional>
@@ -9,7 +9,7 @@
 
 #include "api/appearance.h"
 
-namespace spark::camera {
+namespace spark::meshes {
 
 /// A corner of a triangle, as the shaders read it.
 struct Vertex {
@@ -25,15 +25,15 @@ struct MeshPart {
   std::vector<Vertex> vertices;  ///< three for each triangle
 };
 
-/// What a file of materials says about one.
+/// What a mesh file, or the file of materials beside it, says about a material.
 struct MeshMaterial {
   std::string name;
   IMaterial::Look look;
   std::string texture;  ///< resource name; "": none
 };
 
-/// A mesh.
-struct Mesh {
+/// A mesh as it looks.
+struct VisualMesh {
   std::vector<MeshPart> parts;  ///< in alphabetical order of their materials
   std::vector<MeshMaterial> materials;
 };
@@ -41,8 +41,9 @@ struct Mesh {
 /// Returns the content of a resource; nullopt if there is none.
 using FindFile = std::function<std::optional<std::string>(const std::string& resource)>;
 
-/// Reads an OBJ file and its MTL files, which `find` looks up as `materials/<file>`, or beside the mesh; textures are
-/// `textures/<file>`, or beside the mesh. Throws Error.
-Mesh readObj(const std::string& resource, const std::string& bytes, const FindFile& find);
+/// Reads a mesh file of any format that readMesh() knows; coordinates are the same. `find` looks up the files of
+/// materials of OBJ as `materials/<file>`, or beside the mesh, and textures as `textures/<file>`, or beside the mesh.
+/// Triangles without normals are flat. Throws Error.
+VisualMesh readVisualMesh(const std::string& resource, const std::string& bytes, const FindFile& find);
 
-}  // namespace spark::camera
+}  // namespace spark::meshes

@@ -1,0 +1,106 @@
+#include "convert.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "api/scene.h"
+#include "compare_trees.h"
+#include "host.h"
+#include "spark/error.h"
+
+namespace sparkhost {
+
+using namespace spark;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char *kModel = "/usr/scene/model", *kWorld = "/usr/scene/world", *kWriter = "/sys/host/writer";
+
+/// The values of a node and of all below it, by property and path.
+void collectValues(const Leaf& leaf, std::vector<std::pair<std::string, Value>>& out) {
+  for (const Property* p : leaf.classObject()->properties())
+    if (!p->readOnly && !p->ofProcess) out.emplace_back(leaf.path() + '.' + p->name, p->get(leaf));
+  if (const Node* node = leaf.asNode())
+    for (const auto& child : node->children()) collectValues(*child, out);
+}
+
+/// A simulation into which a file is imported, without a run.
+class Scene {
+ public:
+  explicit Scene(const Options& options) : host_(options) { host_.build(); }
+  Kernel& kernel() { return host_.kernel(); }
+  Node& model() { return kernel().root().require<Node>(kModel); }
+
+  /// Imports a file, a path or a resource, below the model.
+  void import(const std::string& name) {
+    kernel().create("BaseNode", kModel);
+    std::string resource = name;
+    if (fs::is_regular_file(name)) {
+      // Files that it names are found beside it, and around it as a resource where there are such.
+      const fs::path file = fs::absolute(name).lexically_normal();
+      Leaf& folder = kernel().create("DirectoryFileSystem", "/sys/server/file/converted");
+      setProperty(folder, "path", file.parent_path().string());
+      resource = file.filename().string();
+    }
+    const auto errors = kernel().log().errors();
+    kernel().root().require<ISceneServer>().importScene(resource, model(), {});
+    if (kernel().log().errors() != errors)
+      throw Error(fmt::format("'{}' was imported in part only: see the errors in the log above", name));
+    if (Leaf* const physics = kernel().root().find("/sys/server/physics")) callMethod(*physics, "settle", {});
+  }
+  std::vector<std::pair<std::string, Value>> worldValues() {
+    std::vector<std::pair<std::string, Value>> out;
+    if (const Leaf* const world = kernel().root().find(kWorld)) collectValues(*world, out);
+    return out;
+  }
+
+ private:
+  Host host_;
+};
+
+/// Names the properties of the world that the import set: they are the world's, and no file can have them.
+void warnOfWorld(const std::vector<std::pair<std::string, Value>>& before, Scene& scene) {
+  for (const auto& value : scene.worldValues()) {
+    if (std::find(before.begin(), before.end(), value) != before.end()) continue;
+    scene.kernel().log().warning("the file sets {} = {}, which is the world's: set it in the config", value.first,
+                                 value.second.text());
+  }
+}
+
+void writeFile(const std::string& file, const std::string& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text << std::flush;
+  if (!out) throw Error(fmt::format("cannot write '{}'", file));
+}
+
+}  // namespace
+
+void convert(const Options& options, const std::string& in, const std::string& out) {
+  Scene original(options);
+  const auto world = original.worldValues();
+  original.import(in);
+  warnOfWorld(world, original);
+  Leaf& writer = original.kernel().create("SceneWriter", kWriter);
+  const std::string text = callMethod(writer, "text", std::vector<Value>{kModel}).plain();
+
+  // The converted file is complete, or is not there.
+  const std::string draft = out + ".draft";
+  try {
+    writeFile(draft, text);
+    Scene converted(options);
+    converted.import(draft);
+    if (const std::string found = differenceOf(original.model(), converted.model()); !found.empty())
+      throw Error(fmt::format("the scene language cannot express '{}': {}", in, found));
+    fs::rename(draft, out);
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove(draft, ignored);
+    throw;
+  }
+}
+
+}  // namespace sparkhost
