@@ -58,8 +58,8 @@ static void act(void) {
     return;
   }
   char text[128];
-  snprintf(text, sizeof text, "A(drive %.2f %.2f 0)(kick 10 %d)", 60 * cos(angle * M_PI / 180),
-           60 * sin(angle * M_PI / 180), distance < 1 ? 60 : 0);
+  snprintf(text, sizeof text, "A(drive %.2f %.2f 0)%s", 60 * cos(angle * M_PI / 180),
+           60 * sin(angle * M_PI / 180), distance < 0.4 ? "(kick 10 60)" : "");
   sendText(text);
 }
 

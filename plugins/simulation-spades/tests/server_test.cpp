@@ -100,8 +100,8 @@ TEST_CASE("An agent in C creates, joins and plays, each act at its simulated tim
                                    "0: +agent 0 (spheres)",
                                    "24: 0 (create)",
                                    "44: 0 (init (unum 0) (teamname Spheres))",
-                                   "64: 0 (drive 60.00 0.00 0)(kick 10 0)",
-                                   "84: 0 (drive 60.00 0.00 0)(kick 10 0)",
+                                   "64: 0 (drive 60.00 0.00 0)",
+                                   "84: 0 (drive 60.00 0.00 0)",
                                });
   std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
   std::string text;
