@@ -138,6 +138,34 @@ function agents(t)
   return server
 end
 
+--- Agents as in the middleware SPADES, in place of agents{}: the host starts them from an agent database, and their
+--- sensations and acts have latencies and think times in simulated time. `types`: names of agent types, with `players`
+--- agents of each; `parser`: class of their language; `effector`: class of the effector that they have from the start.
+function spades(t)
+  local database = option{ name = "agentDatabase", default = "", doc = "XML file that says which programs are agents." }
+  local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: it is dropped." }
+  local think    = option{ name = "thinkTime", default = "FixedThinkTime",
+                           doc = "How long agents think: FixedThinkTime, or CpuThinkTime for the CPU time that they use." }
+  languages()
+  plugin "gamecontrol"
+  plugin "simulation-spades"
+  local server = new("SpadesServer", "/sys/server/spades")
+  new(think, "/sys/server/spades/think")
+  local control = new("GameControl", "/sys/server/gamecontrol")
+  control.perceptDelay, control.createEffector = 0, t.effector or "SceneEffector"
+  new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
+  local schedule = new("SenseSchedule", "/sys/server/gamecontrol/schedule")
+  server.logs = logs
+  if database ~= "" then server.database = database end
+  local count = 0
+  for type in (t.types or ""):gmatch("%S+") do
+    server:queueAgents(type, t.players)
+    count = count + t.players
+  end
+  schedule.agents = math.max(count, 1)
+  return server
+end
+
 --- Monitor server and the monitor port. `encoder`: class of the monitors' language.
 function monitors(t)
   plugin "monitor"

@@ -129,6 +129,16 @@ class IEye {
   virtual void sights(std::vector<Sight>& out) = 0;
 };
 
+/// Decides when each agent senses. A child of game control; without it all agents sense in the same cycles.
+class IAgentTurns {
+ public:
+  SPARK_INTERFACE(IAgentTurns, 1);
+  virtual ~IAgentTurns() = default;
+  /// True if the agent senses in this cycle. Its percepts are then sent even if there are none. Sense phase, simulation
+  /// thread.
+  virtual bool senses(const AgentAspect& agent, std::int64_t cycle) const = 0;
+};
+
 /// Logs the mistakes of agents. Offered by game control.
 class IRemarks {
  public:

@@ -21,6 +21,7 @@ void GameControl::describe(Description<GameControl>& d) {
   d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
       .doc("Reads the identity of agents that join; without it they have none.");
   d.link(&GameControl::tape_, At<IInputTape>()).doc("Records the wall clock where it decides, or plays it.");
+  d.link(&GameControl::turns_, Child<IAgentTurns>()).doc("Decides when each agent senses; without it all do at once.");
   d.link(&GameControl::judges_, Child<IAgentJudge>()).doc("Judge what agents ask for and do.");
   d.property("requests", &GameControl::requests_)
       .doc(
@@ -290,6 +291,10 @@ void GameControl::sense(const Event& event) {
       for (const auto& p : participants_) p->dropRemovedPerceptors();
   };
   dropRemoved();
+
+  for (const auto& p : participants_)
+    p->setTurn(turns_.get() == nullptr || (p->aspect() && turns_->senses(*p->aspect(), event.cycle)),
+               turns_.get() != nullptr);
 
   // Update what several agents' perceptors share. Perceptors that are scripts may change the tree here.
   ++round_;

@@ -99,6 +99,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
   Link<IInputTape> tape_;
+  Link<IAgentTurns> turns_;
   Links<IAgentJudge> judges_;
   gamecontrol::JudgeList activeJudges_;  ///< of this turn
   std::optional<gamecontrol::AgentLog> log_;

@@ -228,6 +228,7 @@ bool Participant::resolveRobot() {
 }
 
 bool Participant::sense(const Event& event) {
+  if (!turn_) return true;
   cycles_ = nextCycle();
   const bool fine = percepts_.sense(event, cycles_);
   encode();
@@ -240,8 +241,8 @@ void Participant::encode() {
 }
 
 bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
-  if (leaving() || vacant_) return true;
-  if (percepts().empty() && !(inside_ && blind_ && hasRobot_)) return true;
+  if (leaving() || vacant_ || !turn_) return true;
+  if (percepts().empty() && !(inside_ ? blind_ && hasRobot_ : sendsEmpty_)) return true;
   if (inside_) {
     think(log, cycle);
     return true;

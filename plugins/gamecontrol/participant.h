@@ -138,8 +138,15 @@ class Participant {
   bool hasRobot() const { return hasRobot_; }
   /// Forgets perceptors that were removed, after a change of the tree.
   void dropRemovedPerceptors() { percepts_.dropRemoved(); }
+  /// Sets whether it senses in this cycle. `always`: its percepts are sent even if there are none.
+  void setTurn(bool senses, bool always) {
+    turn_ = senses;
+    sendsEmpty_ = always;
+  }
   /// Updates what its perceptors share with those of others, before sense(). `round`: number of the sense phase.
-  void share(std::uint64_t round) { percepts_.share(round, nextCycle()); }
+  void share(std::uint64_t round) {
+    if (turn_) percepts_.share(round, nextCycle());
+  }
   /// Counts the cycle, calls the perceptors that are due and encodes the message. Any thread; changes only this agent.
   /// False if reportFaults() has something to report.
   bool sense(const Event& event);
@@ -222,6 +229,7 @@ class Participant {
   const bool inside_;
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false, vacant_ = false;
   Seat seat_;
+  bool turn_ = true, sendsEmpty_ = false;  ///< see setTurn()
   bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
   Given given_;
   LockstepRecord lockstep_;

@@ -17,22 +17,32 @@ class GameStatePerceptor : public Perceptor {
     match_.refresh(*this);
     const GameStateAspect* game = match_.game();
     if (!game || !match_.settings()) return;
-    out.open("GS");
+    const bool longNames = match_.settings()->longNames;
+    out.open(longNames ? "GameState" : "GS");
     if (AgentState* s = match_.state(); s && s->takeAnnouncement()) {
       out.pair("unum", s->unum());
       out.pair("team", sideName(s->side()));
+      if (longNames) writeSizes(out, *match_.settings());
     }
     if (match_.settings()->reportScore) {
       out.pair("sl", game->score(soccer::Side::left));
       out.pair("sr", game->score(soccer::Side::right));
     }
-    out.pair("t", game->time());
-    out.pair("pm", playModeName(game->mode()));
+    out.pair(longNames ? "time" : "t", game->time());
+    out.pair(longNames ? "playmode" : "pm", playModeName(game->mode()));
     if (match_.settings()->extraGameState) writeExtra(out, *game, match_.settings()->teamSize);
     out.close();
   }
 
  private:
+  /// Writes what robots of 2004 are told once.
+  static void writeSizes(Predicates& out, const SoccerSettings& s) {
+    out.pair("FieldLength", s.fieldLength).pair("FieldWidth", s.fieldWidth).pair("FieldHeight", s.fieldHeight);
+    out.pair("GoalWidth", s.goalWidth).pair("GoalDepth", s.goalDepth).pair("GoalHeight", s.goalHeight);
+    out.pair("BorderSize", s.borderSize);
+    out.pair("AgentMass", s.agentMass).pair("AgentRadius", s.agentRadius).pair("AgentMaxSpeed", s.agentMaxSpeed);
+    out.pair("BallRadius", s.ballRadius).pair("BallMass", s.ballMass);
+  }
   /// Writes `(k left) (ti ((1 penalty_none 0.000)) ())` with Soccer.ExtraGameState: the kick-off side, and for each
   /// player of each team number, penalty and remaining time. Without a penalty the remaining time is minus the time of
   /// play, as in the SPL server.

@@ -4,6 +4,8 @@
 
 #include <optional>
 
+#include "long_names.h"
+
 namespace spark::soccer {
 
 namespace {
@@ -35,12 +37,13 @@ void readLine(const Element& line, Sightings& out) {
 
 void SeeReader::read(const Element& see, Sightings& out) const {
   for (const Element e : see) {
-    if (e.head() == "P")
+    const std::string label = labelOf(e);
+    if (label == "P")
       readPlayer(e, out);
-    else if (e.head() == "L")
+    else if (label == "L")
       readLine(e, out);
     else if (const Element polar = e.named("pol"))
-      readThing(std::string(e.head()), polar, out);
+      readThing(label, polar, out);
   }
 }
 

@@ -133,6 +133,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .doc(
           "GS also contains the kick-off side of the half and each player's penalty: (k left) (ti ((1 penalty_none "
           "0.00)) ()).");
+  d.property("LongNames", &S::longNames)
+      .doc(
+          "Percepts have the names of 2004: Vision with Flag, Goal, Ball and Player, GameState with time and playmode "
+          "and, once, the sizes of the field. RestrictedVisionPerceptors keep theirs.");
   d.property("ConstantTemperature", &S::constantTemperature)
       .doc("AgentState always contains 23 degC, whatever the temperature is.");
   d.property("VisionInterval", &S::visionInterval)

@@ -1,5 +1,7 @@
 #include "vision_perceptor.h"
 
+#include "long_names.h"
+
 namespace spark {
 
 using soccer::VisibleObjects;
@@ -23,17 +25,20 @@ void VisionPerceptor::sense(Predicates& out, const Event&) {
   const VisibleObjects& objects = eye_.objects();
   noise_.allowed = !eye_.settings() || eye_.settings()->visionNoise;
   soccer::Polar polar;
-  out.open(predicateName_);
+  const bool longNames = eye_.settings() && eye_.settings()->longNames;
+  out.open(longNames && predicateName_ == "See" ? "Vision" : std::string_view(predicateName_));
   for (const VisibleObjects::Object& o : objects.field()) {
     if (!see(o.position, o.body, polar)) continue;
-    out.open(o.state->perceptName());
+    soccer::openSeen(out, o.state->perceptName(), longNames);
     writePolar(out, polar);
     out.close();
   }
   for (const std::uint32_t i : eye_.robotsNear(origin_)) {
     const VisibleObjects::Robot& r = objects.robots()[i];
     if (r.agent == eye_.agent() || r.state->side() == soccer::Side::none || !see(r.position, r.body, polar)) continue;
-    out.open(r.state->perceptName()).pair("team", std::string_view(r.state->team())).pair("id", r.state->unum());
+    soccer::openSeen(out, r.state->perceptName(), longNames)
+        .pair("team", std::string_view(r.state->team()))
+        .pair("id", r.state->unum());
     writePolar(out, polar);
     out.close();
   }

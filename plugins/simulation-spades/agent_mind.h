@@ -1,0 +1,97 @@
+#pragma once
+/// \file
+/// One agent in simulated time: what it is told when, how long it thinks, when its acts take effect.
+///
+/// Times are steps of the simulation, as integers. A sensation of time s arrives at s + senseLatency and begins a think
+/// cycle, as a time notification does that the agent requested. The agent sends acts (A), requests (R) and questions
+/// (C), and ends the cycle with D. Its think time is measured or modelled; all acts of a cycle are sent at its end and
+/// take effect actLatency later:
+///
+///     sensed     arrives = cycle begins       D: cycle ends          acts take effect
+///       s ──senseLatency──► a ─────think────────► e ───actLatency────► e + actLatency
+///
+/// What comes while it thinks waits for the end of the cycle. A time notification names the time that was requested, a
+/// sensation that of its arrival.
+///
+/// The world may run on while the agent thinks, until the first time at which an act of it could take effect: at least
+/// `least` think time, and the latency, after the beginning of the cycle. So agents think at the same time as one
+/// another and as the world, and no result depends on when their messages come.
+///
+/// Source: Obst and Rollmann, "Spark", 2004, sections 5.1 and 5.2; Riley, "SPADES", 2003.
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace spark::spades {
+
+/// Simulated time [steps].
+using Time = std::int64_t;
+inline constexpr Time kNever = std::numeric_limits<Time>::max();
+
+/// Latencies of agents [steps].
+struct Latencies {
+  Time sense = 10, act = 10;
+  /// A sensation that waits longer for the end of a cycle is dropped.
+  Time mostWaiting = 50;
+};
+
+/// An act on its way to the world.
+struct Act {
+  Time due = 0;  ///< when it takes effect
+  std::string data;
+};
+
+/// The agent's side of the conversation is in messages of one letter and text, without framing.
+class AgentMind {
+ public:
+  explicit AgentMind(const Latencies& latencies) : latencies_(latencies) {}
+
+  /// Queues what the agent senses at time `sent`; may be empty.
+  void sense(Time sent, std::string data);
+  /// The next message to the agent that is due at `now`, if it can take one; it begins a think cycle. `least`: smallest
+  /// think time of the cycle [steps].
+  std::optional<std::string> next(Time now, Time least);
+  /// What follows from a message of the agent.
+  enum class Result {
+    nothing,
+    ready,     ///< the agent is initialised
+    question,  ///< it asks for the think time so far: answer with C
+    done,      ///< the cycle ends: call end()
+    exit,      ///< it leaves
+  };
+  Result take(std::string_view message);
+  /// Ends the cycle after `thought` steps; appends its acts.
+  void end(Time thought, std::vector<Act>& acts);
+
+  bool ready() const { return ready_; }
+  bool thinking() const { return thinking_; }
+  /// When the cycle began. Only while thinking().
+  Time began() const { return began_; }
+  /// Until it answers, the world must not execute the step that begins at this time; kNever: no limit.
+  Time horizon() const { return thinking_ ? began_ + least_ + latencies_.act : kNever; }
+  /// Sensations that were dropped because the agent thought for too long.
+  std::int64_t dropped() const { return dropped_; }
+
+ private:
+  struct Pending {
+    Time due;   ///< arrives then, or later if the agent thinks
+    Time sent;  ///< of a sensation; -1: a time notification
+    std::string data;
+  };
+  std::deque<Pending>::iterator firstDue();
+
+  const Latencies& latencies_;
+  std::deque<Pending> pending_;  ///< in the order of insertion
+  std::vector<std::string> acts_;
+  std::vector<Time> requests_;
+  bool ready_ = false, thinking_ = false;
+  Time began_ = 0, ended_ = 0, least_ = 0;
+  std::int64_t dropped_ = 0;
+};
+
+}  // namespace spark::spades

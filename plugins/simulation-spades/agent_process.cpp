@@ -1,0 +1,179 @@
+#include "agent_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <vector>
+
+#include "spark/error.h"
+
+extern char** environ;
+
+namespace spark::spades {
+
+namespace {
+namespace fs = std::filesystem;
+constexpr std::size_t kPrefix = 4;
+
+/// A pipe whose ends are closed in programs that are started.
+std::array<int, 2> makePipe() {
+  std::array<int, 2> ends;
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+  return ends;
+}
+
+/// A copy of a descriptor above all that an agent may want, so that assigning its own cannot overwrite it.
+int moveUp(int descriptor) {
+  const int high = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 300);
+  if (high < 0) throw Error(fmt::format("cannot copy a descriptor: {}", std::strerror(errno)));
+  ::close(descriptor);
+  return high;
+}
+
+/// The program of a type: in its folder, else in PATH.
+std::string programOf(const AgentType& type) {
+  const fs::path here = fs::path(type.folder) / type.command.front();
+  return fs::exists(here) ? here.string() : type.command.front();
+}
+
+struct Actions {
+  posix_spawn_file_actions_t list;
+  Actions() { posix_spawn_file_actions_init(&list); }
+  ~Actions() { posix_spawn_file_actions_destroy(&list); }
+};
+struct Attributes {
+  posix_spawnattr_t list;
+  Attributes() { posix_spawnattr_init(&list); }
+  ~Attributes() { posix_spawnattr_destroy(&list); }
+};
+}  // namespace
+
+AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
+  const std::array<int, 2> to = makePipe(), from = makePipe();
+  toAgent_ = to[1];
+  fromAgent_ = from[0];
+  const int reads = moveUp(to[0]), writes = moveUp(from[1]);
+
+  Actions actions;
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions.list, 0, "/dev/null", O_RDONLY, 0);
+  const std::string out = log.empty() ? "/dev/null" : log + "-stdout.log",
+                    errors = log.empty() ? "/dev/null" : log + "-stderr.log";
+  posix_spawn_file_actions_addopen(&actions.list, 1, out.c_str(), kFlags, 0644);
+  posix_spawn_file_actions_addopen(&actions.list, 2, errors.c_str(), kFlags, 0644);
+  posix_spawn_file_actions_adddup2(&actions.list, reads, type.in);
+  posix_spawn_file_actions_adddup2(&actions.list, writes, type.out);
+  posix_spawn_file_actions_addchdir_np(&actions.list, type.folder.c_str());
+  // A group of its own, so that what it starts ends with it, and Ctrl-C at the host does not reach it first.
+  Attributes attributes;
+  sigset_t none, usual;
+  sigemptyset(&none);
+  sigfillset(&usual);
+  posix_spawnattr_setsigmask(&attributes.list, &none);
+  posix_spawnattr_setsigdefault(&attributes.list, &usual);
+  posix_spawnattr_setflags(&attributes.list, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+
+  std::vector<char*> arguments;
+  for (const std::string& word : type.command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  const int error =
+      ::posix_spawnp(&pid_, programOf(type).c_str(), &actions.list, &attributes.list, arguments.data(), environ);
+  ::close(reads);
+  ::close(writes);
+  if (error != 0) {
+    ::close(toAgent_);
+    ::close(fromAgent_);
+    throw Error(fmt::format("cannot start '{}' in {}: {}", type.command.front(), type.folder, std::strerror(error)));
+  }
+  for (const int end : {toAgent_, fromAgent_}) ::fcntl(end, F_SETFL, ::fcntl(end, F_GETFL) | O_NONBLOCK);
+}
+
+AgentProcess::~AgentProcess() {
+  if (!ended()) kill();
+  ::close(toAgent_);
+  ::close(fromAgent_);
+}
+
+bool AgentProcess::ended() {
+  if (!reaped_ && ::waitpid(pid_, nullptr, WNOHANG) == pid_) reaped_ = true;
+  return reaped_;
+}
+
+void AgentProcess::kill() {
+  ::kill(-pid_, SIGKILL);
+  if (!reaped_) reaped_ = ::waitpid(pid_, nullptr, 0) == pid_;
+}
+
+void AgentProcess::send(std::string_view message) {
+  if (!lost_.empty()) return;
+  if (out_.size() + message.size() > kMostUnread) return fail("it does not read its messages");
+  for (int shift = 24; shift >= 0; shift -= 8) out_ += static_cast<char>(message.size() >> shift);
+  out_ += message;
+  flush();
+}
+
+void AgentProcess::flush() {
+  while (!out_.empty()) {
+    // The host ignores SIGPIPE.
+    const ssize_t n = ::write(toAgent_, out_.data(), out_.size());
+    if (n > 0) {
+      out_.erase(0, static_cast<std::size_t>(n));
+    } else if (errno == EAGAIN) {
+      return;
+    } else if (errno != EINTR) {
+      return fail(fmt::format("its pipe is closed: {}", std::strerror(errno)));
+    }
+  }
+}
+
+void AgentProcess::poll() {
+  if (!lost_.empty()) return;
+  flush();
+  in_.erase(0, std::exchange(read_, 0));
+  std::array<char, 16384> buffer;
+  while (lost_.empty() && in_.size() <= kMostUnread) {
+    const ssize_t n = ::read(fromAgent_, buffer.data(), buffer.size());
+    if (n > 0) {
+      in_.append(buffer.data(), static_cast<std::size_t>(n));
+    } else if (n == 0) {
+      fail("its program has ended, or closed its pipe");
+    } else if (errno == EAGAIN) {
+      return;
+    } else if (errno != EINTR) {
+      fail(fmt::format("its pipe cannot be read: {}", std::strerror(errno)));
+    }
+  }
+}
+
+std::optional<std::string_view> AgentProcess::receive() {
+  const std::string_view rest = std::string_view(in_).substr(read_);
+  if (rest.size() < kPrefix) return std::nullopt;
+  std::size_t length = 0;
+  for (const char byte : rest.substr(0, kPrefix)) length = length << 8 | static_cast<unsigned char>(byte);
+  if (length > kMostUnread) {
+    fail(fmt::format("it announces a message of {} bytes, at most {} are taken", length, kMostUnread));
+    read_ = in_.size();
+    return std::nullopt;
+  }
+  if (rest.size() - kPrefix < length) return std::nullopt;
+  read_ += kPrefix + length;
+  return rest.substr(kPrefix, length);
+}
+
+double AgentProcess::cpuSeconds() const {
+  clockid_t clock;
+  timespec t;
+  if (::clock_getcpuclockid(pid_, &clock) != 0 || ::clock_gettime(clock, &t) != 0) return 0;
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+}  // namespace spark::spades

@@ -1,0 +1,284 @@
+#include "spades_server.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+
+#include <algorithm>
+#include <deque>
+#include <filesystem>
+#include <thread>
+
+#include "spark/error.h"
+
+namespace spark {
+
+using spades::AgentMind;
+using spades::Time;
+
+namespace {
+constexpr auto kLook = std::chrono::milliseconds(10);  // while agents end
+constexpr int kMostWait = 25;                          // ms, so that a request to stop is seen
+}  // namespace
+
+/// An agent: its program, its time, and its side of the connection to the consumer.
+class SpadesServer::Agent final : public IConnection {
+ public:
+  Agent(SpadesServer& server, int id, const spades::AgentType& type, const std::string& log)
+      : mind(server.latencies_),
+        process(type, log),
+        model(spades::readTimer(type.timer)),
+        server_(server),
+        id_(id),
+        name_(fmt::format("agent {} ({})", id, type.name)) {}
+
+  std::uint64_t id() const override { return static_cast<std::uint64_t>(id_) + 1; }
+  const std::string& peer() const override { return name_; }
+  Node& port() override { return server_; }
+  /// A message of the consumer is what the agent senses now.
+  bool send(std::string_view message) override {
+    mind.sense(server_.now(), std::string(message));
+    return true;
+  }
+  bool idle() const override { return true; }
+  double stalledSeconds() const override { return 0; }
+  void close(std::string_view reason) override { lose(reason); }
+  /// The agent takes part no longer.
+  void lose(std::string_view why) {
+    if (!lost.empty()) return;
+    lost = why;
+    process.send("X");
+  }
+
+  AgentMind mind;
+  spades::AgentProcess process;
+  std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
+  std::deque<spades::Act> acts;             ///< on their way, in the order of their time
+  std::string lost;                         ///< why; "": it takes part
+  bool connected = false;
+  double cpuAtBegin = 0;  ///< of the cycle [s]
+  Clock::time_point began{};
+
+ private:
+  SpadesServer& server_;
+  const int id_;
+  std::string name_;
+};
+
+SpadesServer::SpadesServer() = default;
+SpadesServer::~SpadesServer() = default;
+
+void SpadesServer::describe(Description<SpadesServer>& d) {
+  using S = SpadesServer;
+  d.doc("Starts agents and exchanges messages with them in simulated time: latencies, think times, causality.");
+  d.implements<IInputSource>();
+  d.implements<IInputGate>();
+  d.link(&S::thinkTime_, Child<ThinkTime>());
+  d.link(&S::simulation_, At<ISimulation>());
+  d.link(&S::tape_, At<IInputTape>());
+  d.link(&S::consumer_, At<IConnectionConsumer>(&S::consumerPath_));
+  d.property("consumer", &S::consumer, &S::setConsumer)
+      .doc("Path of the node that gets the agents and their acts, and whose messages they sense.");
+  d.property("database", &S::database, &S::setDatabase)
+      .ofProcess()
+      .doc("File of the agent database, which is read at once.");
+  d.property("logs", &S::logs_)
+      .ofProcess()
+      .doc("Folder for what agents print: agent<n>-stdout.log and -stderr.log; empty: it is dropped.");
+  d.property("senseLatency", &S::senseLatency, &S::setSenseLatency)
+      .unit("steps")
+      .range(1, 10000)
+      .doc("Time from sensing to the arrival of the sensation at the agent.");
+  d.property("actLatency", &S::actLatency, &S::setActLatency)
+      .unit("steps")
+      .range(1, 10000)
+      .doc("Time from the end of a thought until its acts take effect.");
+  d.property("mostThought", &S::mostThought_)
+      .unit("s")
+      .min(0.01)
+      .doc("An agent that thinks for longer is lost (wall time).");
+  d.property("shutdown", &S::shutdown_)
+      .unit("s")
+      .min(0)
+      .doc("How long agents may take to end when they are told to (wall time).");
+  d.property("agents", &S::agentCount).doc("Number of agents now.");
+  d.property("lost", &S::lost_).readOnly().doc("Number of agents that were lost.");
+  d.method("queueAgents", &S::queueAgents)
+      .parameters({"type", "count"})
+      .doc("Queues agents of a type of the database; all are started before the first cycle.");
+}
+
+void SpadesServer::setConsumer(std::string path) {
+  consumerPath_ = std::move(path);
+  consumer_.lookAgain();
+}
+
+void SpadesServer::setDatabase(std::string file) {
+  types_ = spades::readAgentDatabase(file);
+  database_ = std::move(file);
+}
+
+void SpadesServer::queueAgents(const std::string& type, int count) {
+  if (stage_ != Stage::queued) throw Error(fmt::format("{}: its agents are started already", path()));
+  if (!types_.contains(type)) {
+    std::string names;
+    for (const auto& [name, unused] : types_) names += (names.empty() ? "" : ", ") + name;
+    throw Error(fmt::format("{}: expected an agent type of the database '{}' ({}), found '{}'", path(), database_,
+                            names, type));
+  }
+  if (count < 0 || count > 1000) throw Error(fmt::format("expected 0 to 1000 agents, found {}", count));
+  queue_.emplace_back(type, count);
+}
+
+// ---- start and end ----
+
+void SpadesServer::start() {
+  stage_ = Stage::starting;
+  if (!logs_.empty()) std::filesystem::create_directories(logs_);
+  for (const auto& [type, count] : queue_) try {
+      for (int i = 0; i < count; ++i) startAgent(types_.at(type));
+    } catch (const std::exception& e) {
+      kernel().log().error("{}: no more agents of type '{}' are started: {}", path(), type, e.what());
+    }
+}
+
+void SpadesServer::startAgent(const spades::AgentType& type) {
+  const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, started_);
+  agents_.push_back(std::make_unique<Agent>(*this, started_, type, log));
+  ++started_;
+  agents_.back()->process.send("D");
+  agents_.back()->began = Clock::now();
+}
+
+/// All agents are there, or lost: they join in the order of their ids.
+void SpadesServer::connectAll() {
+  const auto waits = [](const auto& a) { return a->lost.empty() && !a->mind.ready(); };
+  if (std::any_of(agents_.begin(), agents_.end(), waits)) return;
+  stage_ = Stage::running;
+  kernel().log().info("{}: {} agents take part.", path(),
+                      std::count_if(agents_.begin(), agents_.end(), [](const auto& a) { return a->lost.empty(); }));
+  for (const auto& a : agents_) {
+    if (!a->lost.empty() || !consumer_) continue;
+    a->connected = true;
+    put(Input::Kind::connect, *a, a->peer());
+    consumer_->connected(*a);
+  }
+}
+
+void SpadesServer::onUnlink() {
+  for (const auto& a : agents_) a->process.send("X");
+  const auto end = Clock::now() + std::chrono::duration<double>(shutdown_);
+  const auto runs = [](const auto& a) { return !a->process.ended(); };
+  while (Clock::now() < end && std::any_of(agents_.begin(), agents_.end(), runs)) std::this_thread::sleep_for(kLook);
+  agents_.clear();
+}
+
+/// Writes an input to the tape.
+void SpadesServer::put(Input::Kind kind, const Agent& agent, std::string_view text) {
+  if (tape_) tape_->put({.kind = kind, .place = path(), .key = agent.id(), .text = text});
+}
+
+// ---- between cycles ----
+
+void SpadesServer::poll() {
+  if (playing()) return;
+  if (stage_ == Stage::queued) start();
+  heard_ = false;
+  for (const auto& a : agents_) exchange(*a);
+  if (stage_ == Stage::starting) connectAll();
+  if (stage_ == Stage::running)
+    for (const auto& a : agents_) {
+      deliver(*a);
+      feed(*a);
+    }
+  removeLost();
+}
+
+/// Reads the agent's messages.
+void SpadesServer::exchange(Agent& a) {
+  a.process.poll();
+  const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
+  const auto thought = [&] { return model.thought(a.process.cpuSeconds() - a.cpuAtBegin); };
+  while (a.lost.empty()) {
+    const auto message = a.process.receive();
+    if (!message) break;
+    heard_ = true;
+    switch (a.mind.take(*message)) {
+      case AgentMind::Result::question:
+        a.process.send(fmt::format("C{}", thought()));
+        break;
+      case AgentMind::Result::done:
+        acts_.clear();
+        a.mind.end(thought(), acts_);
+        for (spades::Act& act : acts_) a.acts.push_back(std::move(act));
+        break;
+      case AgentMind::Result::exit:
+        a.lose("it leaves");
+        break;
+      case AgentMind::Result::ready:
+      case AgentMind::Result::nothing:
+        break;
+    }
+  }
+  if (!a.process.lost().empty()) a.lose(a.process.lost());
+  const bool waitedFor = a.mind.thinking() || !a.mind.ready();
+  if (waitedFor && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
+    a.lose(fmt::format("it thinks for more than {} s", mostThought_));
+}
+
+/// Passes the next message to the agent that is due.
+void SpadesServer::deliver(Agent& a) {
+  if (!a.lost.empty()) return;
+  const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
+  const auto message = a.mind.next(now(), model.least());
+  if (!message) return;
+  a.cpuAtBegin = model.fixed ? 0 : a.process.cpuSeconds();
+  a.began = Clock::now();
+  a.process.send(*message);
+}
+
+/// Passes the acts that take effect now to the consumer.
+void SpadesServer::feed(Agent& a) {
+  for (; a.connected && a.lost.empty() && consumer_ && !a.acts.empty() && a.acts.front().due <= now();
+       a.acts.pop_front()) {
+    put(Input::Kind::message, a, a.acts.front().data);
+    consumer_->received(a, a.acts.front().data);
+  }
+}
+
+void SpadesServer::removeLost() {
+  for (std::size_t i = 0; i < agents_.size();) {
+    Agent& a = *agents_[i];
+    // One that is lost while it thinks is missed when the world can go on no longer without it: always at the same
+    // step.
+    if (a.lost.empty() || (a.mind.thinking() && a.mind.horizon() > now())) {
+      ++i;
+      continue;
+    }
+    kernel().log().warning("{}: {} is lost at step {}: {}.", path(), a.peer(), now(), a.lost);
+    ++lost_;
+    if (a.connected && consumer_) {
+      put(Input::Kind::leave, a);
+      consumer_->disconnected(a);
+    }
+    agents_.erase(agents_.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+}
+
+bool SpadesServer::ready(bool) {
+  if (playing()) return true;
+  return stage_ == Stage::running &&
+         std::all_of(agents_.begin(), agents_.end(), [this](const auto& a) { return a->mind.horizon() > now(); });
+}
+
+bool SpadesServer::wait(double seconds) {
+  std::vector<pollfd> waiting;
+  for (const auto& a : agents_) {
+    waiting.push_back({a->process.input(), POLLIN, 0});
+    if (a->process.output() >= 0) waiting.push_back({a->process.output(), POLLOUT, 0});
+  }
+  ::poll(waiting.data(), waiting.size(), std::clamp(static_cast<int>(seconds * 1000), 0, kMostWait));
+  poll();
+  return heard_;
+}
+
+}  // namespace spark

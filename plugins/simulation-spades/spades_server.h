@@ -1,0 +1,86 @@
+#pragma once
+/// \file
+/// Agents as the middleware SPADES has them: started by the server, told what they sense, timed by how long they think.
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "agent_database.h"
+#include "agent_mind.h"
+#include "agent_process.h"
+#include "api/inputs.h"
+#include "api/net.h"
+#include "api/phases.h"
+#include "spark/describe.h"
+#include "think_time.h"
+
+namespace spark {
+
+/// At /sys/server/spades; a child is a ThinkTime. Starts the queued agents, passes percepts of its consumer to them as
+/// sensations and their acts to the consumer, each at its simulated time, and keeps the world from running ahead of
+/// acts that may still come. Simulation thread.
+class SpadesServer : public Node, public IInputSource, public IInputGate {
+  SPARK_CLASS(SpadesServer, Node)
+ public:
+  static constexpr const char* kPath = "/sys/server/spades";
+  SpadesServer();
+  ~SpadesServer() override;
+  static void describe(Description<SpadesServer>& d);
+
+  /// Queues `count` agents of a type of the agent database. Throws Error if there is no such type, or the agents are
+  /// started already.
+  void queueAgents(const std::string& type, int count);
+
+  void poll() override;
+  bool wait(double seconds) override;
+  bool ready(bool lockstep) override;
+
+ protected:
+  void onUnlink() override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  class Agent;
+  enum class Stage { queued, starting, running };
+
+  bool playing() const { return tape_ && tape_->playing(); }
+  spades::Time now() const { return simulation_ ? simulation_->cycle() : 0; }
+  void start();
+  void startAgent(const spades::AgentType& type);
+  void connectAll();
+  void exchange(Agent& agent);
+  void deliver(Agent& agent);
+  void feed(Agent& agent);
+  void removeLost();
+  void put(Input::Kind kind, const Agent& agent, std::string_view text = {});
+  void readDatabase();
+  void setDatabase(std::string file);
+  void setSenseLatency(int steps) { latencies_.sense = steps; }
+  void setActLatency(int steps) { latencies_.act = steps; }
+  int senseLatency() const { return static_cast<int>(latencies_.sense); }
+  int actLatency() const { return static_cast<int>(latencies_.act); }
+  int agentCount() const { return static_cast<int>(agents_.size()); }
+  const std::string& database() const { return database_; }
+  const std::string& consumer() const { return consumerPath_; }
+  void setConsumer(std::string path);
+
+  spades::Latencies latencies_;
+  std::string database_, logs_, consumerPath_ = "/sys/server/gamecontrol";
+  double mostThought_ = 10, shutdown_ = 2;
+  std::map<std::string, spades::AgentType> types_;
+  std::vector<std::pair<std::string, int>> queue_;
+  std::vector<std::unique_ptr<Agent>> agents_;  ///< in order of id
+  std::vector<spades::Act> acts_;               ///< used by exchange()
+  Stage stage_ = Stage::queued;
+  bool heard_ = false;  ///< something happened in this poll()
+  int started_ = 0, lost_ = 0;
+
+  Link<ThinkTime> thinkTime_;
+  Link<ISimulation> simulation_;
+  Link<IInputTape> tape_;
+  Link<IConnectionConsumer> consumer_;
+};
+
+}  // namespace spark

@@ -1,0 +1,140 @@
+#include <catch2/catch.hpp>
+
+#include "../agent_mind.h"
+#include "../think_time.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::spades;
+using Result = AgentMind::Result;
+
+namespace {
+
+/// An agent that has said I, with constant think time.
+struct Talk {
+  Latencies latencies;
+  AgentMind mind{latencies};
+  std::vector<Act> acts;
+  Time think;
+
+  explicit Talk(Time steps = 3) : think(steps) { REQUIRE(mind.take("I") == Result::ready); }
+  std::optional<std::string> at(Time now) { return mind.next(now, think); }
+  void done() {
+    REQUIRE(mind.take("D") == Result::done);
+    mind.end(think, acts);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a sensation arrives after its latency and opens a cycle; acts take effect after think time and latency") {
+  Talk t;
+  t.mind.sense(1, "");
+  REQUIRE_FALSE(t.at(10));
+  REQUIRE(t.at(11) == "S1 11 ");
+  REQUIRE(t.mind.thinking());
+  REQUIRE(t.mind.horizon() == 11 + 3 + 10);
+  REQUIRE_FALSE(t.at(12));
+  t.mind.take("A(create)");
+  t.mind.take("A");
+  t.mind.take("A(drive 1 0 0)");
+  t.done();
+  REQUIRE(t.acts.size() == 2);
+  REQUIRE(t.acts[0].due == 24);
+  REQUIRE(t.acts[0].data == "(create)");
+  REQUIRE(t.acts[1].due == 24);
+  REQUIRE(t.mind.horizon() == kNever);
+}
+
+TEST_CASE("time notifications come at their time, or at the end of the cycle that requested them") {
+  Talk t;
+  t.mind.sense(10, "x");
+  REQUIRE(t.at(20) == "S10 20 x");
+  t.mind.take("R22");
+  t.mind.take("R40");
+  t.mind.take("Rubbish");
+  t.done();
+  REQUIRE_FALSE(t.at(22));
+  REQUIRE(t.at(23) == "T22");
+  t.done();
+  REQUIRE_FALSE(t.at(39));
+  REQUIRE(t.at(40) == "T40");
+}
+
+TEST_CASE(
+    "what comes while the agent thinks waits for the end of the cycle, in the order of time; too old it is dropped") {
+  Talk t(15);
+  t.mind.sense(10, "a");
+  t.mind.sense(20, "b");
+  REQUIRE(t.at(20) == "S10 20 a");
+  REQUIRE_FALSE(t.at(30));
+  t.mind.take("R32");
+  t.done();  // ends at 35
+  REQUIRE_FALSE(t.at(34));
+  REQUIRE(t.at(35) == "S20 35 b");
+  t.done();
+  REQUIRE(t.at(50) == "T32");
+  t.mind.sense(50, "late");
+  t.mind.sense(130, "in time");
+  REQUIRE(t.mind.take("D") == Result::done);
+  t.mind.end(100, t.acts);  // 90 steps after the first of them arrived
+  REQUIRE(t.at(150) == "S130 150 in time");
+  REQUIRE(t.mind.dropped() == 1);
+}
+
+TEST_CASE("the order of messages does not depend on when the agent answers") {
+  const auto run = [](Time answersAt) {
+    Talk t;
+    std::vector<std::string> told;
+    t.mind.sense(10, "a");
+    told.push_back(*t.at(20));
+    t.mind.take("R25");
+    if (answersAt < 25) t.done();
+    for (Time now = 21; now < 33; ++now) {  // the world may run until 33
+      if (now == 22) t.mind.sense(22, "b");
+      if (now == answersAt && t.mind.thinking()) t.done();
+      if (auto m = t.at(now)) {
+        told.push_back(*m);
+        t.done();
+      }
+    }
+    for (Time now = 33; now < 50; ++now)
+      if (auto m = t.at(now)) {
+        told.push_back(*m);
+        t.done();
+      }
+    return told;
+  };
+  REQUIRE(run(20) == std::vector<std::string>{"S10 20 a", "T25", "S22 32 b"});
+  REQUIRE(run(32) == run(20));
+}
+
+TEST_CASE("messages at the wrong time are ignored") {
+  Talk t;
+  REQUIRE(t.mind.take("D") == Result::nothing);
+  REQUIRE(t.mind.take("C") == Result::nothing);
+  REQUIRE(t.mind.take("I") == Result::nothing);
+  REQUIRE(t.mind.take("") == Result::nothing);
+  REQUIRE(t.mind.take("Zwhat") == Result::nothing);
+  t.mind.take("A(early)");
+  t.mind.take("R5");
+  t.mind.sense(1, "");
+  REQUIRE(t.at(11));
+  t.done();
+  REQUIRE(t.acts.empty());
+  REQUIRE_FALSE(t.at(100));
+  REQUIRE(t.mind.take("X") == Result::exit);
+}
+
+TEST_CASE("timers of the database: fixed and measured") {
+  REQUIRE(readTimer("fixed 3")->thought(99) == 3);
+  REQUIRE(readTimer("fixed 0")->least() == 0);
+  const ThinkModel jiffies = *readTimer("jiffies 2000");
+  REQUIRE(jiffies.least() == 1);
+  REQUIRE(jiffies.thought(0) == 1);
+  REQUIRE(jiffies.thought(0.0021) == 2);
+  REQUIRE_FALSE(readTimer("default"));
+  REQUIRE_FALSE(readTimer(""));
+  for (const char* bad : {"fixed", "fixed -1", "jiffies 0", "sundial 3", "fixed 3x"})
+    REQUIRE_THROWS_WITH(readTimer(bad), Catch::Contains(bad));
+}

@@ -1,0 +1,173 @@
+#include <catch2/catch.hpp>
+#include <chrono>
+#include <fstream>
+
+#include "api/net.h"
+#include "api/phases.h"
+#include "temporary_folder.h"
+#include "test_support.h"
+
+using namespace spark;
+using namespace spark::test;
+
+namespace {
+
+/// Tells each agent the cycle in every 20th one, and notes what comes back.
+class Listener : public Node, public IConnectionConsumer {
+  SPARK_CLASS(Listener, Node)
+ public:
+  static void describe(Description<Listener>& d) {
+    d.doc("Notes what agents do.");
+    d.implements<IConnectionConsumer>();
+    d.on<&Listener::act>(phase::kAct);
+    d.on<&Listener::sense>(phase::kSense);
+  }
+  void connected(IConnection& c) override {
+    agents.push_back(&c);
+    note("+" + c.peer());
+  }
+  void received(IConnection& c, std::string_view message) override { note(fmt::format("{} {}", c.id() - 1, message)); }
+  void disconnected(IConnection& c) override {
+    std::erase(agents, &c);
+    note("-" + c.peer());
+  }
+  void act(const Event& event) {
+    for (const std::string& line : arrived) lines.push_back(fmt::format("{}: {}", event.cycle - 1, line));
+    arrived.clear();
+  }
+  void sense(const Event& event) {
+    if (event.cycle % 20 == 1)
+      for (IConnection* c : agents) c->send("(Ball (pol 5 0 0))");
+  }
+  std::vector<IConnection*> agents;
+  std::vector<std::string> lines;    ///< with the step in which they were in effect
+  std::vector<std::string> arrived;  ///< since the last act phase
+
+ private:
+  void note(std::string line) { arrived.push_back(std::move(line)); }
+};
+
+struct Field {
+  TemporaryFolder folder;
+  TestHost host;
+  Kernel& kernel = host.kernel;
+  Listener* listener = nullptr;
+
+  /// `types`: name and arguments of the test agent, for each a type.
+  using Types = std::vector<std::pair<std::string, std::string>>;
+  explicit Field(const Types& types, const std::string& timer = "fixed 3") {
+    kernel.registerClass<Listener>();
+    for (const char* plugin : {"simulation", "simulation-spades"}) kernel.plugins().use(plugin);
+    kernel.create("Simulation", "/sys/server/simulation");
+    set("/sys/server/simulation", "rate", "max");
+    set("/sys/server/simulation", "step", 0.01);
+    listener = &kernel.create<Listener>("Listener", "/usr/listener");
+    std::string xml = "<agentdb>\n";
+    for (const auto& [name, arguments] : types)
+      xml += fmt::format(
+          "<agent_type_external name=\"{}\"><timer>{}</timer><working_dir>{}</working_dir>"
+          "<exec_line>spades-agent {}</exec_line></agent_type_external>\n",
+          name, timer, binFolder().string(), arguments);
+    kernel.create("SpadesServer", "/sys/server/spades");
+    set("/sys/server/spades", "consumer", "/usr/listener");
+    set("/sys/server/spades", "database", folder.write("agentdb.xml", xml + "</agentdb>\n"));
+    set("/sys/server/spades", "logs", folder.file("logs"));
+    for (const auto& [name, unused] : types) queue(name, 1);
+  }
+  void set(const char* path, const char* property, const Value& value) {
+    setProperty(kernel.root().require<Leaf>(path), property, value);
+  }
+  void queue(const std::string& type, int count) {
+    callMethod(kernel.root().require<Leaf>("/sys/server/spades"), "queueAgents", std::vector<Value>{type, count});
+  }
+  void run(int cycles) {
+    callMethod(kernel.root().require<Leaf>("/sys/server/simulation"), "runCycles", std::vector<Value>{cycles});
+  }
+  std::vector<std::string> linesWith(std::string_view text) const {
+    std::vector<std::string> out;
+    for (const std::string& line : listener->lines)
+      if (line.find(text) != line.npos) out.push_back(line);
+    return out;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("An agent in C creates, joins and plays, each act at its simulated time") {
+  Field f(Field::Types{{"spheres", "Spheres"}});
+  f.run(100);
+  REQUIRE(f.listener->lines == std::vector<std::string>{
+                                   "0: +agent 0 (spheres)",
+                                   "24: 0 (create)",
+                                   "44: 0 (init (unum 0) (teamname Spheres))",
+                                   "64: 0 (drive 60.00 0.00 0)",
+                                   "84: 0 (drive 60.00 0.00 0)",
+                               });
+  std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
+  std::string text;
+  std::getline(log, text);
+  REQUIRE(text == "Spheres plays");
+}
+
+TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
+  Field f(Field::Types{{"good", "Good"},
+                       {"crashes", "Bad crash 2"},
+                       {"quits", "Bad quit 2"},
+                       {"garbles", "Bad garbage 2"},
+                       {"forks", "Bad fork"},
+                       {"hangs", "Bad hang 2"}});
+  f.set("/sys/server/spades", "mostThought", 0.5);
+  f.run(100);
+  REQUIRE(f.linesWith("(drive").size() == 4);  // of good and forks
+  REQUIRE(f.listener->agents.size() == 2);
+  for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed its pipe",
+                           "agent 2 (quits) is lost at step 44: its program has ended, or closed its pipe",
+                           "agent 3 (garbles) is lost at step 44: it announces a message of 4294967295 bytes",
+                           "agent 5 (hangs) is lost at step 44: it thinks for more than 0.5 s"}) {
+    CAPTURE(line);
+    CHECK_THAT(f.host.text, Catch::Contains(line));
+  }
+}
+
+TEST_CASE("Who thinks longer acts later, and all think at the same time") {
+  Field f(Field::Types{{"quick", "A burn 1"}, {"slow", "B burn 25"}}, "jiffies 10000");
+  f.run(30);
+  REQUIRE(f.linesWith("0 (create)") == std::vector<std::string>{"22: 0 (create)"});
+  REQUIRE(f.linesWith("1 (create)") == std::vector<std::string>{"24: 1 (create)"});
+}
+
+TEST_CASE("A database that cannot be read says where and what") {
+  Field f(Field::Types{});
+  const auto fails = [&](const std::string& xml) {
+    try {
+      f.set("/sys/server/spades", "database", f.folder.write("bad.xml", xml));
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("nothing");
+  };
+  CHECK_THAT(fails("<agentdb>\n  <agent_type_external name=\"x\">\n"), Catch::Contains("bad.xml:2:"));
+  CHECK_THAT(fails("<other/>"), Catch::Contains("bad.xml:1:2: expected the element agentdb"));
+  CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"/></agentdb>"), Catch::Contains("has no exec_line"));
+  CHECK_THAT(fails("<agentdb><agent_type_external/></agentdb>"), Catch::Contains("expected an attribute name"));
+  CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"><inputfd>1</inputfd></agent_type_external></agentdb>"),
+             Catch::Contains("expected a descriptor from 3 to 255 in inputfd, found '1'"));
+  CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"><inputfd>4</inputfd></agent_type_external></agentdb>"),
+             Catch::Contains("expected two descriptors"));
+  REQUIRE_THROWS_WITH(f.queue("ghosts", 1), Catch::Contains("expected an agent type of the database"));
+}
+
+TEST_CASE("A program that cannot be started is an error in the log, and the others play") {
+  Field f(Field::Types{{"good", "Good"}});
+  f.set("/sys/server/spades", "database",
+        f.folder.write("other.xml", fmt::format("<agentdb><agent_type_external name='none'><exec_line>no-such-program"
+                                                "</exec_line></agent_type_external>"
+                                                "<agent_type_external name='good'><timer>fixed 3</timer><working_dir>{}"
+                                                "</working_dir><exec_line>spades-agent G</exec_line>"
+                                                "</agent_type_external></agentdb>",
+                                                binFolder().string())));
+  f.queue("none", 2);
+  f.run(30);
+  CHECK_THAT(f.host.text, Catch::Contains("cannot start 'no-such-program'"));
+  CHECK(f.linesWith("0 (create)").size() == 1);
+}

@@ -1,0 +1,122 @@
+/* An agent for the middleware SPADES, written from the description of its messages alone: it reads from descriptor 3
+ * and writes to descriptor 4, each message behind a length of four bytes, big-endian.
+ *
+ *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | fork]
+ *
+ * Like the agents of 2004 it counts sensations: it creates its sphere at the first, joins its team at the second, and
+ * plays from the third on: it asks for the think time so far, requests a time notification, drives towards the ball and
+ * kicks it. The second argument is how it misbehaves, from sensation N on, or how many ms of CPU each thought takes. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+static char message[65536];
+
+static void readAll(char* to, size_t n) {
+  while (n > 0) {
+    ssize_t got = read(3, to, n);
+    if (got <= 0) exit(1);
+    to += got;
+    n -= (size_t)got;
+  }
+}
+
+static void receive(void) {
+  unsigned char prefix[4];
+  readAll((char*)prefix, 4);
+  size_t n = (size_t)prefix[0] << 24 | (size_t)prefix[1] << 16 | (size_t)prefix[2] << 8 | prefix[3];
+  if (n >= sizeof message) exit(1);
+  readAll(message, n);
+  message[n] = 0;
+}
+
+static void sendText(const char* text) {
+  size_t n = strlen(text);
+  char bytes[1024] = {(char)(n >> 24), (char)(n >> 16), (char)(n >> 8), (char)n};
+  memcpy(bytes + 4, text, n);
+  if (write(4, bytes, n + 4) != (ssize_t)(n + 4)) exit(1);
+}
+
+static void burn(double ms) {
+  struct timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  double end = t.tv_sec * 1e3 + t.tv_nsec * 1e-6 + ms;
+  do clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  while (t.tv_sec * 1e3 + t.tv_nsec * 1e-6 < end);
+}
+
+/* Drives towards the ball, by the place at which the last sensation shows it, and kicks it when it is near. */
+static void act(void) {
+  const char* ball = strstr(message, "(Ball (pol ");
+  double distance, angle, elevation;
+  if (!ball) ball = strstr(message, "(B (pol ");
+  if (!ball || sscanf(strchr(ball + 1, '('), "(pol %lf %lf %lf", &distance, &angle, &elevation) != 3) {
+    sendText("A(drive 0 0 0)");
+    return;
+  }
+  char text[128];
+  snprintf(text, sizeof text, "A(drive %.2f %.2f 0)%s", 60 * cos(angle * M_PI / 180),
+           60 * sin(angle * M_PI / 180), distance < 0.4 ? "(kick 10 60)" : "");
+  sendText(text);
+}
+
+int main(int argc, char** argv) {
+  const char* team = argc > 1 ? argv[1] : "Spheres";
+  const char* way = argc > 2 ? argv[2] : "";
+  const int from = argc > 3 ? atoi(argv[3]) : 0;
+  int sensations = 0;
+  printf("%s plays\n", team);
+  fflush(stdout);
+  if (strcmp(way, "fork") == 0 && fork() == 0)
+    for (;;) pause();
+  for (;;) {
+    receive();
+    if (message[0] == 'D') sendText("I");
+    if (message[0] == 'X') return 0;
+    if (message[0] == 'T') {
+      sendText("A");  /* an empty act is legal */
+      sendText("D");
+    }
+    if (message[0] != 'S') continue;
+    const int n = ++sensations;
+    if (from > 0 && n >= from) {
+      if (strcmp(way, "hang") == 0) continue;  /* no D */
+      if (strcmp(way, "crash") == 0) abort();
+      if (strcmp(way, "quit") == 0) return 0;
+      if (strcmp(way, "garbage") == 0) {
+        if (write(4, "\377\377\377\377 no length", 14) != 14) return 1;
+        continue;
+      }
+      if (strcmp(way, "deaf") == 0) { /* reads no more */
+        close(3);
+        for (;;) pause();
+      }
+    }
+    if (strcmp(way, "burn") == 0) burn(from);
+    if (n == 1) {
+      sendText("A(create)");
+    } else if (n == 2) {
+      char text[128];
+      snprintf(text, sizeof text, "A(init (unum 0) (teamname %s))", team);
+      sendText(text);
+    } else {
+      char text[65536];
+      memcpy(text, message, sizeof text);
+      sendText("C");
+      receive(); /* its answer is next, by the protocol */
+      if (message[0] != 'C') return 1;
+      long sent, arrived;
+      if (sscanf(text, "S%ld %ld", &sent, &arrived) == 2) {
+        char request[64];
+        snprintf(request, sizeof request, "R%ld", arrived + 5);
+        sendText(request);
+      }
+      memcpy(message, text, sizeof text);
+      act();
+    }
+    sendText("D");
+  }
+}
