@@ -6,19 +6,25 @@
 namespace spark {
 
 void MaterialSolid::describe(Description<MaterialSolid>& d) {
+  using M = MaterialSolid;
   d.doc("A material of one colour, for viewers.");
   d.implements<IMaterial>();
-  d.property("ambient", &MaterialSolid::ambient_).doc("Colour in ambient light.");
-  d.property("diffuse", &MaterialSolid::diffuse_).doc("Colour in direct light.");
-  d.property("specular", &MaterialSolid::specular_).doc("Colour of its highlights.");
-  d.property("emission", &MaterialSolid::emission_).doc("Colour of emitted light.");
-  d.property("shininess", &MaterialSolid::shininess_).unit("1").range(0, 128).doc("Sharpness of highlights.");
-  d.property("depthCheck", &MaterialSolid::depthCheck_).doc("Hidden by objects in front of it.");
+  d.property("ambient", &M::shown<Color, &M::ambient_>, &M::show<Color, &M::ambient_>).doc("Colour in ambient light.");
+  d.property("diffuse", &M::shown<Color, &M::diffuse_>, &M::show<Color, &M::diffuse_>).doc("Colour in direct light.");
+  d.property("specular", &M::shown<Color, &M::specular_>, &M::show<Color, &M::specular_>)
+      .doc("Colour of its highlights.");
+  d.property("emission", &M::shown<Color, &M::emission_>, &M::show<Color, &M::emission_>)
+      .doc("Colour of emitted light.");
+  d.property("shininess", &M::shown<double, &M::shininess_>, &M::show<double, &M::shininess_>)
+      .unit("1")
+      .range(0, 128)
+      .doc("Sharpness of highlights.");
+  d.property("depthCheck", &M::depthCheck_).doc("Hidden by objects in front of it.");
 }
 
 void Material2DTexture::describe(Description<Material2DTexture>& d) {
   d.doc("A material with a picture on it, for viewers.");
-  d.property("diffuseTexture", &Material2DTexture::texture_)
+  d.property("diffuseTexture", &Material2DTexture::texture, &Material2DTexture::setTexture)
       .doc("Resource name of the picture, a PNG file that multiplies the colours; empty: none.");
 }
 

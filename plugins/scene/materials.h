@@ -6,6 +6,7 @@
 
 #include "api/appearance.h"
 #include "api/scene.h"
+#include "modified.h"
 
 namespace spark {
 
@@ -18,9 +19,18 @@ class MaterialSolid : public Leaf, public IMaterial {
   const std::string& texture() const override { return texture_; }
 
  protected:
-  std::string texture_;
+  void setTexture(const std::string& name) { setShown(*this, texture_, name); }
 
  private:
+  template <class T, T MaterialSolid::*kPart>
+  const T& shown() const {
+    return this->*kPart;
+  }
+  template <class T, T MaterialSolid::*kPart>
+  void show(const T& value) {
+    setShown(*this, this->*kPart, value);
+  }
+  std::string texture_;
   Color ambient_{0.2f, 0.2f, 0.2f, 1}, diffuse_{1, 1, 1, 1}, specular_{0, 0, 0, 1}, emission_{0, 0, 0, 1};
   double shininess_ = 128;
   bool depthCheck_ = true;

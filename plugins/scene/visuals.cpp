@@ -10,19 +10,14 @@ namespace {
 SceneServer* serverOf(const Leaf& leaf) {
   return leaf.isLinked() ? leaf.find<SceneServer>(ISceneServer::kPath) : nullptr;
 }
-/// Marks the scene as modified.
-void modified(const Leaf& leaf) {
-  if (!leaf.isLinked()) return;
-  if (auto* server = leaf.kernel().root().find<ISceneServer>()) server->markModified();
-}
 }  // namespace
 
 void Light::describe(Description<Light>& d) {
   d.doc("A light source, for viewers.");
   d.implements<IVisual>();
-  d.property("diffuse", &Light::diffuse_).doc("Diffuse colour.");
-  d.property("ambient", &Light::ambient_).doc("Ambient colour.");
-  d.property("specular", &Light::specular_).doc("Specular colour.");
+  d.property("diffuse", &Light::color<&Light::diffuse_>, &Light::setColor<&Light::diffuse_>).doc("Diffuse colour.");
+  d.property("ambient", &Light::color<&Light::ambient_>, &Light::setColor<&Light::ambient_>).doc("Ambient colour.");
+  d.property("specular", &Light::color<&Light::specular_>, &Light::setColor<&Light::specular_>).doc("Specular colour.");
   d.property("radius", &Light::radius_).unit("m").min(0).doc("Range of the light.");
 }
 
@@ -112,7 +107,7 @@ void StaticMesh::loadMesh(std::string load) {
   load_ = std::move(load);
   if (!classObject()) return;
   meshChanged();
-  modified(*this);
+  markModified(*this);
 }
 
 void StaticMesh::meshChanged() {
@@ -121,7 +116,7 @@ void StaticMesh::meshChanged() {
 
 void StaticMesh::setScale(const Vec3f& scale) {
   scale_ = scale;
-  if (classObject()) modified(*this);
+  if (classObject()) markModified(*this);
 }
 
 void StaticMesh::resetMaterials(std::vector<std::string> names) {
@@ -129,7 +124,7 @@ void StaticMesh::resetMaterials(std::vector<std::string> names) {
     if (auto* known = kernel().root().find<MaterialServer>("/sys/server/material"))
       for (const std::string& name : names) known->warnUnlessKnown(name, *this);
   materials_ = std::move(names);
-  modified(*this);
+  markModified(*this);
 }
 
 void StaticMesh::saveState(StateWriter& out) const { out.write(Convert<std::vector<std::string>>::to(materials_)); }
@@ -143,7 +138,7 @@ void StaticMesh::loadState(StateReader& in) {
 void StaticMesh::setMaterialName(std::size_t i, std::string name) {
   if (i >= materials_.size() || materials_[i] == name) return;
   materials_[i] = std::move(name);
-  modified(*this);
+  markModified(*this);
 }
 
 void SingleMatNode::describe(Description<SingleMatNode>& d) {

@@ -4,6 +4,7 @@
 
 #include "api/scene.h"
 #include "api/scene_calls.h"
+#include "modified.h"
 
 namespace spark {
 
@@ -24,6 +25,14 @@ class Light : public SceneNode, public IVisual {
   std::array<Color, 3> lightColors() const override { return {diffuse_, ambient_, specular_}; }
 
  private:
+  template <Color Light::*kPart>
+  const Color& color() const {
+    return this->*kPart;
+  }
+  template <Color Light::*kPart>
+  void setColor(const Color& color) {
+    setShown(*this, this->*kPart, color);
+  }
   Color diffuse_{1, 1, 1, 1}, ambient_{0, 0, 0, 1}, specular_{1, 1, 1, 1};
   double radius_ = 1000;
   // Empty results of load() and materials().

@@ -50,7 +50,8 @@ void PieceBuilder::addEvents(const Snapshot& snapshot) {
   for (const Element event : snapshot.events) {
     const std::string message = eventMessage(snapshot.eventTimes[i++], event);
     addRecord(growing_->content, Record::text, message);
-    growing_->changes += "," + message;
+    // Sounds are many, and a timeline does not show them.
+    if (event.head() != "sound") growing_->changes += "," + message;
   }
 }
 

@@ -23,8 +23,9 @@ struct Piece {
   double from = 0, to = 0;  ///< s, simulated, of the first and the last frame
   std::uint32_t shape = 0;  ///< number of its scene
   std::string environment;  ///< the whole one, at `from`
-  std::string changes{};    ///< messages with changes and events, without `always` entries, each after a comma
-  std::string content{};    ///< its records
+  /// Messages with changes and events, without `always` entries and sounds, each after a comma.
+  std::string changes{};
+  std::string content{};  ///< its records
 };
 
 /// How the content of a piece or a scene is packed.

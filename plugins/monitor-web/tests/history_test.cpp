@@ -38,6 +38,7 @@ struct Match {
     s.events.clear();
     s.eventTimes.clear();
     if (foul > 0) s.events.open("foul").add(std::exchange(foul, 0)).close(), s.eventTimes.push_back(s.time);
+    if (loud) s.events.open("sound").add("bump").add(1).close(), s.eventTimes.push_back(s.time);
     history.take(s, shape, {});
   }
   void play(double seconds) {
@@ -63,6 +64,7 @@ struct Match {
   std::minstd_rand random{7};
   bool restless = false;
   int cycles = 0, bodies = 3, score = 0, foul = 0;
+  bool loud = false;
 };
 
 }  // namespace
@@ -166,8 +168,9 @@ TEST_CASE("A simulation that is set back begins anew") {
   CHECK(m.history.scene(1) != nullptr);
 }
 
-TEST_CASE("The outline has what happened, without the clock") {
+TEST_CASE("The outline has what happened, without the clock and sounds") {
   Match m(20);
+  m.loud = true;
   m.play(1);
   m.score = 1;
   m.play(20);

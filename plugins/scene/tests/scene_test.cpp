@@ -1,6 +1,7 @@
 #include "api/scene.h"
 
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "api/files.h"
 #include "api/phases.h"
@@ -285,6 +286,35 @@ TEST_CASE("lights and cameras return the values that were set") {
   callMethod(camera, "lookAt", numbers({1, 2, 3}));
   CHECK(callMethod(camera, "getViewportWidth", {}) == Value(320));
   CHECK(callMethod(camera, "getFOV", {}) == Value(90.0));
+}
+
+TEST_CASE("another colour of a light or a material at run time is a change of the scene, and the same one is none") {
+  Fixture f;
+  Leaf& materials = f.kernel.create("MaterialServer", "/sys/server/material");
+  Leaf& light = f.scene->create("Light");
+  callMethod(materials, "define", List{"paint", 1, 0, 0, 1});
+  Leaf& wood = f.kernel.create("Material2DTexture", "/sys/server/material/wood");
+  auto changes = [&, before = f.server->modifiedCount()]() mutable {
+    return f.server->modifiedCount() - std::exchange(before, f.server->modifiedCount());
+  };
+  for (const char* part : {"diffuse", "ambient", "specular"}) {
+    INFO(part);
+    setProperty(light, part, numbers({0.5, 0, 0, 1}));
+    setProperty(wood, part, numbers({0.5, 0, 0, 1}));
+    CHECK(changes() == 2);
+    setProperty(light, part, numbers({0.5, 0, 0, 1}));
+    setProperty(wood, part, numbers({0.5, 0, 0, 1}));
+    CHECK(changes() == 0);
+  }
+  setProperty(wood, "emission", numbers({0, 0, 1, 1}));
+  setProperty(wood, "shininess", 7.0);
+  setProperty(wood, "diffuseTexture", "textures/oak.png");
+  CHECK(changes() == 3);
+  callMethod(materials, "define", List{"paint", 0, 1, 0, 1});
+  CHECK(changes() == 1);
+  callMethod(materials, "define", List{"paint", 0, 1, 0, 1});
+  setProperty(light, "radius", 5.0);
+  CHECK(changes() == 0);
 }
 
 TEST_CASE("a game in Lua reports its status with a group of variables, which are state") {

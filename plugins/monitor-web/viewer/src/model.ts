@@ -92,6 +92,17 @@ export interface GameEvent {
   side?: Side;
 }
 
+/// A sound of the scene, or of the referee.
+export interface Sound {
+  /// Simulated time [s].
+  time: number;
+  name: string;
+  /// 0..1.
+  volume: number;
+  /// Position [m]; null: it is heard everywhere.
+  at: [number, number, number] | null;
+}
+
 /// Counters that increase with each change. A reader stores the last value and updates when it differs.
 export interface Versions {
   /// Nodes, shapes, meshes, materials or robots changed: readers must rebuild.
@@ -115,6 +126,8 @@ export interface World {
   time: number;
   environment: Environment;
   events: GameEvent[];
+  /// What is heard with this update, and in no other one.
+  sounds: Sound[];
   drawings: Map<string, Drawing[]>;
   versions: Versions;
 }

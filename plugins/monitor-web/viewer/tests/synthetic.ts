@@ -35,7 +35,7 @@ export class SyntheticWorld {
   world(environment: [string, string | number][] = []): World {
     return {
       nodes: this.nodes, local: Float32Array.from(this.matrices.flat()), robots: this.robots, ball: this.ball, time: 0, environment: new Map(environment),
-      events: [], drawings: new Map(), versions: { scene: 1, frame: 1, environment: 1, events: 0, drawings: 0 },
+      events: [], sounds: [], drawings: new Map(), versions: { scene: 1, frame: 1, environment: 1, events: 0, drawings: 0 },
     };
   }
 

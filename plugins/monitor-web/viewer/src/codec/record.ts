@@ -15,7 +15,8 @@ export interface Head {
 
 const kMostNodes = 50_000;
 const kDeepest = 64;
-const kMaxEntries = 512;
+/// Events since the record before included, such as sounds.
+const kMaxEntries = 2048;
 
 /// These values stay strings: team names may look like numbers.
 const kWords = new Set(["team_left", "team_right", "play_modes"]);

@@ -12,7 +12,7 @@ export function isEntry(from: unknown): from is Entry {
 }
 
 /// Entries that are events, not state.
-const kOnce = new Set(["foul", "messages"]);
+const kOnce = new Set(["foul", "messages", "sound"]);
 
 /// Protocol names of play modes, by number, if a message does not contain its own list.
 const kModes =

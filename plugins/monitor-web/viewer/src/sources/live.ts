@@ -1,4 +1,4 @@
-import type { Drawing, GameEvent, LiveSource, Robot, Status, World } from "../model";
+import type { Drawing, GameEvent, LiveSource, Robot, Sound, Status, World } from "../model";
 import type { Entry } from "../codec/record";
 import { FrameDecoder } from "../codec/frames";
 import { Connection, type Connect, connectSocket } from "./connection";
@@ -14,6 +14,7 @@ import { Poses } from "./poses";
 import { Questions } from "./questions";
 import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
 import { isRecord, readScene } from "./scene_message";
+import { soundIn, whistlesAt } from "./sounds";
 import { emptyWorld, showScene } from "./world";
 
 /// The running match, and its last minutes. Frames are shown with a small delay, so that motion is smooth; everything
@@ -21,6 +22,8 @@ import { emptyWorld, showScene } from "./world";
 /// a host causes an error in the viewer.
 
 const kMostEvents = 1000;
+/// Limit of sounds between two pictures. If there was no picture for longer than this, they are left out [ms].
+const kMostSounds = 64, kLongestPicture = 1000;
 
 export class Live implements LiveSource {
   readonly kind = "live";
@@ -42,6 +45,9 @@ export class Live implements LiveSource {
   private readonly ring = new FrameRing();
   private readonly clock = new LiveClock();
   private events = new EventReader();
+  /// Sounds since the last update.
+  private coming: Sound[] = [];
+  private last = NaN;
   private scene: Scene = kNoScene;
   /// The last decoded poses; delta frames refer to them.
   private poses = new Poses();
@@ -74,6 +80,9 @@ export class Live implements LiveSource {
   }
 
   update(now: number): void {
+    this.present.sounds = now - this.last > kLongestPicture ? [] : this.coming;
+    this.world.sounds = this.coming = [];
+    this.last = now;
     if (this.past && !this.past.following) this.past.update(now);
     else this.updatePresent(now);
     this.show();
@@ -281,6 +290,8 @@ export class Live implements LiveSource {
 
   private takeEvent(message: Record<string, unknown>): boolean {
     if (!isEntry(message.entry)) return false;
+    const sound = soundIn(message);
+    if (sound) this.addSounds([sound]);
     this.addEvents(this.events.take(this.present.environment, [message.entry], Number(message.time) || 0));
     return true;
   }
@@ -318,6 +329,11 @@ export class Live implements LiveSource {
     if (events.length === 0) return;
     this.present.events = [...this.present.events, ...events].slice(-kMostEvents);
     ++this.present.versions.events;
+    this.addSounds(whistlesAt(events));
+  }
+
+  private addSounds(sounds: Sound[]): void {
+    this.coming = [...this.coming, ...sounds].slice(-kMostSounds);
   }
 
   private forget(): void {

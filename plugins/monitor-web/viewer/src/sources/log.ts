@@ -1,7 +1,8 @@
-import type { Environment, GameEvent } from "../model";
+import type { Environment, GameEvent, Sound } from "../model";
 import { readPackets } from "../codec/packets";
 import { RecordReader } from "../codec/record";
 import { EventReader, modeName, takeEntries } from "./events";
+import { soundOf } from "./sounds";
 
 /// The index of a recorded match, which has one monitor message per line, and its bytes, loaded by page: a log may be
 /// larger than memory.
@@ -26,8 +27,8 @@ const kUsual = 0.2;
 const kLikely = 10;
 /// Maximum plausible interval between two records [ms].
 const kLongestStep = 60_000;
-/// Limits of records and events, more than a season has. Anything beyond them is ignored.
-const kMaxRecords = 4_000_000, kMostEvents = 20_000;
+/// Limits of records, events and sounds, more than a season has. Anything beyond them is ignored.
+const kMaxRecords = 4_000_000, kMostEvents = 20_000, kMostSounds = 200_000;
 
 export interface LogRecord {
   /// Bytes of the line in the file, including draw commands.
@@ -52,6 +53,7 @@ export interface LogRecord {
 export interface LogIndex {
   records: LogRecord[];
   events: GameEvent[];
+  sounds: Sound[];
   /// Number of skipped lines.
   damaged: number;
 }
@@ -84,6 +86,7 @@ class Indexer {
   private readonly environment: Environment = new Map();
   private readonly eventReader = new EventReader();
   private readonly found: { event: GameEvent; record: number }[] = [];
+  private readonly sounds: { sound: Sound; record: number }[] = [];
   private readonly records: LogRecord[] = [];
   private damaged = 0;
   private gap = 0;
@@ -121,7 +124,8 @@ class Indexer {
     if (records.length === 0) throw new Error(this.noLog(name));
     this.setClocks();
     const events = this.found.map(({ event, record }) => ({ ...event, time: records[record]!.clock }));
-    return { records, events, damaged: this.damaged };
+    const sounds = this.sounds.map(({ sound, record }) => ({ ...sound, time: records[record]!.clock }));
+    return { records, events, sounds, damaged: this.damaged };
   }
 
   private noLog(name: string): string {
@@ -155,6 +159,10 @@ class Indexer {
     takeEntries(this.environment, head.environment, head.full);
     const gameTime = Number(this.environment.get("time") ?? NaN);
     for (const event of this.eventReader.take(this.environment, head.environment, gameTime || 0)) if (this.found.length < kMostEvents) this.found.push({ event, record: this.records.length });
+    for (const entry of head.environment) {
+      const sound = this.sounds.length < kMostSounds ? soundOf(entry, 0) : null;
+      if (sound) this.sounds.push({ sound, record: this.records.length });
+    }
     if (offset + from - this.pageStart >= kPage || this.records.length === 0) {
       this.pageStart = offset + from;
       if (this.records.length > 0) ++this.page;

@@ -23,6 +23,7 @@ export class Mirror {
     to.time = from.time;
     to.environment = from.environment;
     to.events = from.events;
+    to.sounds = from.sounds;
     to.drawings = from.drawings;
   }
 }

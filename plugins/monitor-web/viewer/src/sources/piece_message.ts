@@ -1,4 +1,6 @@
 import { decompress } from "fzstd";
+import type { Sound } from "../model";
+import { soundIn } from "./sounds";
 import { changeOf, type Change, type Piece, type TapeFrame } from "./tape";
 
 /// The binary messages with which a host answers requests for the past, and which recordings contain.
@@ -42,9 +44,9 @@ export function readPast(bytes: Uint8Array): PastMessage | null {
   try {
     const content = contentOf(bytes);
     if (bytes[0] === kScene) return { kind: "scene", shape, message: JSON.parse(decoder.decode(content)) };
-    const frames = readRecords(content);
-    if (!frames || frames.length === 0 || !(from <= to)) return null;
-    return { kind: "piece", piece: { from, to, shape, complete: bytes[1] === 1, frames } };
+    const read = readRecords(content);
+    if (!read || read.frames.length === 0 || !(from <= to)) return null;
+    return { kind: "piece", piece: { from, to, shape, complete: bytes[1] === 1, ...read } };
   } catch {
     return null;
   }
@@ -69,13 +71,16 @@ export function messagesOf(bytes: Uint8Array): unknown[] {
   return messages;
 }
 
-function readRecords(content: Uint8Array): TapeFrame[] | null {
+function readRecords(content: Uint8Array): Pick<Piece, "frames" | "sounds"> | null {
   const frames: TapeFrame[] = [];
+  const sounds: Sound[] = [];
   let changes: Change[] = [];
   for (const { kind, bytes } of recordsOf(content)) {
     if (kind === kText) {
-      const change = changeOf(JSON.parse(decoder.decode(bytes)));
+      const message: unknown = JSON.parse(decoder.decode(bytes));
+      const change = changeOf(message), sound = soundIn(message);
       if (change) changes.push(change);
+      if (sound) sounds.push(sound);
     } else if (kind === kFrame) {
       const time = timeOf(bytes);
       if (Number.isNaN(time)) return null;
@@ -83,7 +88,7 @@ function readRecords(content: Uint8Array): TapeFrame[] | null {
       changes = [];
     }
   }
-  return frames;
+  return { frames, sounds: sounds.sort((a, b) => a.time - b.time) };
 }
 
 /// Throws an Error if a record is longer than the content.

@@ -1,4 +1,4 @@
-import type { Environment, GameEvent, ReplaySource, World } from "../model";
+import type { Environment, GameEvent, ReplaySource, Sound, World } from "../model";
 import { DrawingBoard } from "../codec/packets";
 import { RecordReader } from "../codec/record";
 import { Blend } from "./blend";
@@ -7,6 +7,7 @@ import { type LogIndex, LogPages, type LogRecord } from "./log";
 import { Poses } from "./poses";
 import { kNoScene, makeScene, sameNodes, type Scene } from "./scene";
 import { addShapes } from "./shapes";
+import { Hearing } from "./sounds";
 import { emptyWorld, showScene } from "./world";
 
 /// A recorded match. Time is that of the log's own clock. The world is interpolated between two records, which are
@@ -46,6 +47,8 @@ export class Replay implements ReplaySource {
   private readonly records: LogRecord[];
   private readonly reader = new RecordReader();
   private readonly blend = new Blend();
+  private readonly sounds: readonly Sound[];
+  private readonly hearing = new Hearing();
   private readonly snapshots = new Map<number, Moment>();
   /// The scene is interpolated between these two; the second one is the first one's successor, or the same at the end.
   private from = new Moment();
@@ -77,6 +80,7 @@ export class Replay implements ReplaySource {
   ) {
     this.records = index.records;
     this.timeline = index.events;
+    this.sounds = index.sounds;
     this.passedOver = index.damaged;
     this.start = this.position = this.records[0]!.clock;
     this.end = this.records[this.records.length - 1]!.clock;
@@ -128,6 +132,7 @@ export class Replay implements ReplaySource {
 
   seek(time: number): void {
     if (!Number.isNaN(time)) this.position = Math.min(this.end, Math.max(this.start, time));
+    this.hearing.jump(this.position);
     this.late = true;
   }
 
@@ -142,14 +147,17 @@ export class Replay implements ReplaySource {
   update(now: number): void {
     const passed = Number.isNaN(this.last) ? 0 : Math.min(kLongestPicture, Math.max(0, now - this.last));
     this.last = now;
+    const speed = this.running ? this.rate : 0;
     if (this.running && !this.late) {
       this.position = Math.min(this.end, this.position + (passed / 1000) * this.rate);
       if (this.position >= this.end) this.running = false;
     }
+    this.world.sounds = [];
     const record = this.recordAt(this.position);
     this.late = !this.reach(record);
     if (this.late) return;
     this.show(record);
+    this.world.sounds = this.hearing.pass(this.position, speed, this.sounds, this.timeline);
     this.late = this.drawn <= record;
   }
 

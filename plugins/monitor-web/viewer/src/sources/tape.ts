@@ -1,4 +1,4 @@
-import type { GameEvent } from "../model";
+import type { GameEvent, Sound } from "../model";
 import type { Entry } from "../codec/record";
 import { isEntry } from "./events";
 import type { Poses } from "./poses";
@@ -29,6 +29,8 @@ export interface Piece {
   /// False: the host is still adding frames to it.
   complete: boolean;
   frames: TapeFrame[];
+  /// In chronological order.
+  sounds: Sound[];
 }
 
 /// A scene, with its poses and visibilities before the first frame.

@@ -3,6 +3,7 @@ import { FrameDecoder } from "../codec/frames";
 import { Blend } from "./blend";
 import { modeName, takeEntries } from "./events";
 import { Poses } from "./poses";
+import { Hearing } from "./sounds";
 import { lastAt, type Piece, type Tape, type TapeScene } from "./tape";
 import { emptyWorld, showScene } from "./world";
 
@@ -21,6 +22,7 @@ export class TapePlayer {
 
   private readonly decoder = new FrameDecoder();
   private readonly blend = new Blend();
+  private readonly hearing = new Hearing();
   private rate = 1;
   private last = NaN;
   private late = true;
@@ -66,6 +68,7 @@ export class TapePlayer {
 
   seek(time: number): void {
     if (!Number.isNaN(time)) this.position = this.within(time);
+    this.hearing.jump(this.position);
     this.steps = 0;
     this.prepared = false;
     this.late = true;
@@ -82,6 +85,7 @@ export class TapePlayer {
   update(now: number): void {
     const passed = Number.isNaN(this.last) ? 0 : Math.min(kLongestPicture, Math.max(0, now - this.last));
     this.last = now;
+    this.world.sounds = [];
     if (this.playing && !this.late) this.position += (passed / 1000) * this.rate;
     this.position = this.within(this.position);
     this.takeSteps();
@@ -89,9 +93,18 @@ export class TapePlayer {
     const scene = piece && this.tape.sceneOf(piece.shape);
     this.late = !scene;
     if (!piece || !scene) return;
+    this.hear(piece);
     if (this.playing && this.atEnd()) this.playing = false;
     this.reach(piece, scene, this.frameAt(piece));
     this.show(piece, scene);
+  }
+
+  private hear(piece: Piece): void {
+    const before = this.piece && this.piece.to <= piece.from ? this.piece.sounds : [];
+    const sounds = before.length > 0 ? [...before, ...piece.sounds] : piece.sounds;
+    // A growing piece may have no sounds yet of the shown time.
+    const time = Math.min(this.position, piece.to);
+    this.world.sounds = this.hearing.pass(time, this.playing ? this.rate : 0, sounds, this.tape.timeline);
   }
 
   /// Takes the steps for which the pieces are loaded.

@@ -10,6 +10,7 @@ export function emptyWorld(): World {
     time: 0,
     environment: new Map(),
     events: [],
+    sounds: [],
     drawings: new Map(),
     versions: { scene: 0, frame: 0, environment: 0, events: 0, drawings: 0 },
   };

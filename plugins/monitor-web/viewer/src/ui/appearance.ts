@@ -1,4 +1,4 @@
-/// Applies the chosen theme, team colours and quality to the page and the stage.
+/// Applies the chosen theme, team colours and quality to the page and the stage, and keeps the choices.
 import { css, inkOn, type Rgb, rgb } from "../view/palette";
 import type { CameraMode, Lights, Quality, Stage, Theme } from "./app";
 import { keepSettings, kPalettes, type Palette, paletteFor, type Settings } from "./settings";
@@ -69,6 +69,12 @@ export class Appearance {
     this.settings.labels = this.stage.labels = !this.stage.labels;
     keepSettings(this.settings);
     return this.settings.labels;
+  }
+
+  switchSound(): boolean {
+    this.settings.sound = !this.settings.sound;
+    keepSettings(this.settings);
+    return this.settings.sound;
   }
 
   keepView(view: CameraMode): void {

@@ -24,6 +24,7 @@ import { Scoreboard } from "./scoreboard";
 import { loadSettings } from "./settings";
 import { Showing } from "./showing";
 import { Side } from "./side";
+import { Sounds } from "./sounds";
 import { connectionOf, kConnectionWords, StatusLine } from "./status_line";
 import { tellWish } from "./stream_wish";
 import { Timeline } from "./timeline";
@@ -46,6 +47,7 @@ export class Application implements App {
   readonly openings = new Openings((file) => void this.showing.openLog(file));
   readonly picker: FieldPicker;
   readonly refereePanel: RefereePanel;
+  readonly sounds = new Sounds();
   /// Number of pictures drawn since the start.
   frames = 0;
 
@@ -64,6 +66,7 @@ export class Application implements App {
     quality: () => this.switchQuality(),
     lights: () => this.switchLights(),
     labels: () => this.switchLabels(),
+    sound: () => this.switchSound(),
     colours: () => this.switchColours(),
     theme: () => this.appearance.switchTheme(),
     open: () => this.openings.choose(),
@@ -97,6 +100,7 @@ export class Application implements App {
       h("div", { class: "below" }, this.picker.banner, this.timeline.element),
     );
     this.appearance = this.makeAppearance(wishes);
+    this.sounds.restore(this.appearance.settings.sound, window);
     this.players = new PlayersPanel(this.side.panel("players"), this, {
       select: (robot) => this.selectRobot(robot),
       headCamera: () => this.setCamera("head"),
@@ -204,6 +208,13 @@ export class Application implements App {
     this.showTools();
   }
 
+  switchSound(): void {
+    const on = this.appearance.switchSound();
+    this.sounds.switch(on);
+    this.toast(on ? "Sounds are on" : "Sounds are off");
+    this.showTools();
+  }
+
   switchColours(): void {
     this.appearance.switchColours();
     this.toast(`Team colours: ${this.appearance.palette.name}`);
@@ -217,6 +228,7 @@ export class Application implements App {
       ++this.frames;
       this.frameRate.drawn();
     }
+    this.sounds.play(this.world.sounds, this.stage.eye.matrixWorld.elements, now);
     if (this.numbers.due(now)) this.refresh(now);
   }
 
@@ -297,8 +309,8 @@ export class Application implements App {
   }
 
   private showTools(): void {
-    const { stage, appearance } = this;
-    this.tools.update({ camera: stage.camera.mode, quality: stage.quality, lights: stage.lights, labels: stage.labels, colours: appearance.palette.name, theme: appearance.theme });
+    const { stage, appearance } = this, { settings } = appearance;
+    this.tools.update({ camera: stage.camera.mode, quality: stage.quality, lights: stage.lights, labels: stage.labels, sound: settings.sound, colours: appearance.palette.name, theme: appearance.theme });
   }
 
   /// The panels are beside the picture, or in a sheet of their own on a phone.

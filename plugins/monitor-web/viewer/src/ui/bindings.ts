@@ -26,6 +26,7 @@ function looks(app: Application): Binding[] {
     { combo: "g", title: "With or without shadows", group, run: () => app.switchQuality() },
     { combo: "z", title: "Lights of the scene, or plain light", group, run: () => app.switchLights() },
     { combo: "l", title: "Labels", group, run: () => app.switchLabels() },
+    { combo: "shift+s", title: "Sounds", group, run: () => app.switchSound() },
     { combo: "c", title: "Team colours", group, run: () => app.switchColours() },
     { combo: "m", title: "Dark or light", group, run: () => app.appearance.switchTheme() },
   ];

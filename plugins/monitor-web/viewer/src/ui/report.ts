@@ -38,6 +38,8 @@ export interface Report {
   /// The protocol name of the mode.
   playMode: string;
   events: number;
+  /// Sounds played while they were switched on, also if the browser has no audio.
+  sounds: number;
 }
 
 export interface Spark {
@@ -71,6 +73,7 @@ export function reportOf(app: Application): Report {
     score: [numberOf(world.environment, "score_left", 0), numberOf(world.environment, "score_right", 0)],
     playMode: modeName(world.environment),
     events: world.events.length,
+    sounds: app.sounds.played,
   };
 }
 

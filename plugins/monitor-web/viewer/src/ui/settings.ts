@@ -36,12 +36,14 @@ export interface Settings {
   quality: Quality;
   lights: Lights;
   labels: boolean;
+  /// Sounds are played.
+  sound: boolean;
   view: CameraMode;
   /// Index in kPalettes.
   palette: number;
 }
 
-export const kDefaults: Settings = { theme: "system", quality: "flat", lights: "scene", labels: true, view: "broadcast", palette: 0 };
+export const kDefaults: Settings = { theme: "system", quality: "flat", lights: "scene", labels: true, sound: false, view: "broadcast", palette: 0 };
 
 const kKey = "spark-viewer";
 
@@ -60,6 +62,7 @@ export function settingsFrom(text: string | null): Settings {
     quality: one(kept.quality, ["flat", "quality"], kDefaults.quality),
     lights: one(kept.lights, ["scene", "plain"], kDefaults.lights),
     labels: one(kept.labels, [true, false], kDefaults.labels),
+    sound: one(kept.sound, [true, false], kDefaults.sound),
     view: one(kept.view, ["orbit", "broadcast", "head", "top"], kDefaults.view),
     palette: one(kept.palette, [...kPalettes.keys()], kDefaults.palette),
   };

@@ -15,6 +15,7 @@ export interface ToolActions {
   quality(): void;
   lights(): void;
   labels(): void;
+  sound(): void;
   colours(): void;
   theme(): void;
   open(): void;
@@ -26,6 +27,7 @@ export interface ToolState {
   quality: Quality;
   lights: Lights;
   labels: boolean;
+  sound: boolean;
   colours: string;
   theme: Theme;
 }
@@ -48,6 +50,7 @@ export class Tools {
   private readonly quality: Tool;
   private readonly lights: Tool;
   private readonly labels: Tool;
+  private readonly sound: Tool;
   private readonly colours: Tool;
   private readonly theme: Tool;
   readonly element: HTMLElement;
@@ -57,6 +60,7 @@ export class Tools {
     this.quality = tool("quality", "Shadows", "g", "quality", actions.quality);
     this.lights = tool("lights", "Lights of the scene", "z", "lamp", actions.lights);
     this.labels = tool("labels", "Labels", "l", "labels", actions.labels);
+    this.sound = tool("sound", "Sounds", "Shift+S", "sound", actions.sound);
     this.colours = tool("colours", "Team colours", "c", "colours", actions.colours);
     this.theme = tool("theme", "Dark or light", "m", "dark", actions.theme);
     const open = tool("open-log", "Open a log", "Ctrl+O", "open", actions.open);
@@ -67,7 +71,7 @@ export class Tools {
       { class: "tools card scrolls", role: "toolbar", "aria-label": "View", "aria-orientation": "vertical" },
       ...buttons(...this.cameras.values()),
       h("hr"),
-      ...buttons(this.quality, this.lights, this.labels, this.colours, this.theme),
+      ...buttons(this.quality, this.lights, this.labels, this.sound, this.colours, this.theme),
       h("hr"),
       ...buttons(open, help),
     );
@@ -78,6 +82,7 @@ export class Tools {
     setAttribute(this.quality.button, "aria-pressed", String(state.quality === "quality"));
     setAttribute(this.lights.button, "aria-pressed", String(state.lights === "scene"));
     setAttribute(this.labels.button, "aria-pressed", String(state.labels));
+    setAttribute(this.sound.button, "aria-pressed", String(state.sound));
     this.rename(this.colours, `Team colours: ${state.colours}`, "C");
     this.rename(this.theme, state.theme === "dark" ? "Light colours" : "Dark colours", "M");
     changeIcon(this.theme.picture, state.theme === "dark" ? "light" : "dark");

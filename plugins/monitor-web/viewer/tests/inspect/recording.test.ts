@@ -19,7 +19,7 @@ function world(): World {
   return {
     nodes, local: new Float32Array([...quarter, ...at(1, 0, 0.5), ...kIdentity, ...at(3, 0, 0.04), ...kIdentity, ...kIdentity]),
     robots: [{ key: "left:3", side: "left", number: 3, node: 0, torso: 1, head: 1 }], ball: 3, time: 4.5,
-    environment: new Map([["play_mode", 3]]), events: [], drawings: new Map(), versions: { scene: 1, frame: 1, environment: 1, events: 1, drawings: 1 },
+    environment: new Map([["play_mode", 3]]), events: [], sounds: [], drawings: new Map(), versions: { scene: 1, frame: 1, environment: 1, events: 1, drawings: 1 },
   };
 }
 

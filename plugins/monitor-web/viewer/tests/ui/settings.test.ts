@@ -4,11 +4,11 @@ import { kDefaults, kPalettes, paletteFor, settingsFrom } from "../../src/ui/set
 
 describe("settings", () => {
   it("are restored as they were stored", () => {
-    const settings = { theme: "light", quality: "quality", lights: "plain", labels: false, view: "top", palette: 2 };
+    const settings = { theme: "light", quality: "quality", lights: "plain", labels: false, sound: true, view: "top", palette: 2 };
     expect(settingsFrom(JSON.stringify(settings))).toEqual(settings);
   });
   it("have defaults for invalid values", () => {
-    for (const text of [null, "", "[", "7", "null", '{"theme":"pink","palette":99,"labels":"yes","lights":1}']) expect(settingsFrom(text)).toEqual(kDefaults);
+    for (const text of [null, "", "[", "7", "null", '{"theme":"pink","palette":99,"labels":"yes","lights":1,"sound":"loud"}']) expect(settingsFrom(text)).toEqual(kDefaults);
   });
 });
 
