@@ -1,5 +1,6 @@
 """Points of the milestone `spades`: agents in simulated time."""
 import json
+import re
 import subprocess
 import tempfile
 import time
@@ -11,25 +12,39 @@ SECONDS = 600  # of a match
 BUSY = 2       # processes beside it
 
 
+class Busy:
+    """Processes that do nothing but compute."""
+
+    def __init__(self, count):
+        self.count = count
+
+    def __enter__(self):
+        self.processes = [subprocess.Popen(["sh", "-c", "while :; do :; done"], start_new_session=True) for _ in range(self.count)]
+
+    def __exit__(self, *unused):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+
+
+def agent_type(name, timer, arguments):
+    return (f"<agent_type_external name='{name}'><timer>{timer}</timer><working_dir>{BIN}</working_dir>"
+            f"<exec_line>spades-agent {arguments}</exec_line></agent_type_external>")
+
+
 def play(timer, seconds=SECONDS, players=11, words="", busy=0):
     """A match of the league of 2004, agents in C; (result, wall time [s])."""
     with tempfile.TemporaryDirectory() as folder:
-        types = "".join(f"<agent_type_external name='{name.lower()}'><timer>{timer}</timer><working_dir>{BIN}</working_dir>"
-                        f"<exec_line>spades-agent {name} {words}</exec_line></agent_type_external>" for name in ("Red", "Blue"))
+        types = "".join(agent_type(name.lower(), timer, f"{name} {words}") for name in ("Red", "Blue"))
         database = Path(folder) / "agentdb.xml"
         database.write_text(f"<agentdb>{types}</agentdb>")
-        others = [subprocess.Popen(["sh", "-c", "while :; do :; done"], start_new_session=True) for _ in range(busy)]
-        try:
+        with Busy(busy):
             start = time.monotonic()
             done = subprocess.run(
                 [BIN / "sparkhost", "--config", "soccer-2004.lua", "--set", f"agentDatabase={database}", "--set", "agents=red blue", "--set",
                  f"players={players}", "--rate", "max", "--duration", str(seconds), "--seed", "3", "--set", "web=false", "--monitor-port", "0",
                  "--log-level", "error"], stdout=subprocess.PIPE, text=True, check=True)
             wall = time.monotonic() - start
-        finally:
-            for process in others:
-                process.kill()
-                process.wait()
     return json.loads(done.stdout.splitlines()[-1]), wall
 
 
@@ -41,6 +56,46 @@ def one_hash():
     fine = len(hashes) == 1 and all(r["agentsSeen"] == 22 and r["faults"] == 0 for r in results)
     score = results[0]["score"]
     return f"{SECONDS} s, 22 agents, {score[0]}:{score[1]}: idle, busy, idle: {', '.join(hashes)}; agents on other machines are not built yet", OPEN if fine else FAIL
+
+
+# A world without bodies, which logs in which step each agent acts.
+ACTS = """
+include "house.lua"
+files() scene()
+simulation().step = 0.01
+spades{ types = "quick slow", players = 1 }
+new("ScriptAspect", "/sys/server/gamecontrol/acts"):on("agentConnected", function(self, event)
+  local robot = get(event.data)
+  for _, word in ipairs{ "create", "init", "drive" } do
+    robot:new("ScriptEffector", word):on("perform", function()
+      log.info(string.format("acts %s %d", robot.number == 1 and "quick" or "slow", get("/sys/server/simulation").cycle - 1))
+    end)
+  end
+end)
+"""
+
+
+def think_longer():
+    """An agent that computes for 30 ms acts three steps later than one that does not, whatever the machine does."""
+    build("release", "spades-agent")
+    cycles, judged, good = 200, [], True
+    for busy in (0, BUSY):
+        say(f"{cycles} thoughts of 0 and 30 ms, beside {busy} busy processes")
+        with tempfile.TemporaryDirectory() as folder, Busy(busy):
+            database, config = Path(folder) / "agentdb.xml", Path(folder) / "acts.lua"
+            database.write_text("<agentdb>" + agent_type("quick", "jiffies 10000", "Quick burn 0") + agent_type("slow", "jiffies 10000", "Slow burn 30") + "</agentdb>")
+            config.write_text(ACTS)
+            done = subprocess.run([BIN / "sparkhost", "--config", config, "--set", f"agentDatabase={database}", "--rate", "max", "--duration",
+                                   str(cycles * 0.2 + 1)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=True)
+        steps = {"quick": [], "slow": []}
+        for who, step in re.findall(r"acts (quick|slow) (\d+)", done.stderr):
+            steps[who].append(int(step))
+        # Both sense in turns, half an interval apart: agent k of 2 first in step 1 + 10 k.
+        later = [slow - quick - 10 for quick, slow in zip(steps["quick"], steps["slow"])]
+        three = sum(n == 3 for n in later)
+        good &= len(later) >= cycles - 1 and three >= 0.99 * len(later)
+        judged.append(f"beside {busy} busy processes {three} of {len(later)}")
+    return "three steps later: " + "; ".join(judged) + "; at least 99 of 100", PASS if good else FAIL
 
 
 def overlap():
@@ -59,5 +114,6 @@ def overlap():
 POINTS = {
     "1": ("a ten-minute match of the league of 2004: one hash", one_hash),
     "2": ("messages, misbehaviour, the recorded conversation", lambda: tests("spades", "spades-captures", "system-spades")),
+    "3": ("who thinks longer acts later", think_longer),
     "4": ("agents think at the same time as one another", overlap),
 }
