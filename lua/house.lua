@@ -146,6 +146,10 @@ function spades(t)
   local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: it is dropped." }
   local think    = option{ name = "thinkTime", default = "FixedThinkTime",
                            doc = "How long agents think: FixedThinkTime, or CpuThinkTime for the CPU time that they use." }
+  local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
+  local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
+  local token    = option{ name = "commToken", default = "", doc = "What they must know; empty: nothing." }
+  local servers  = option{ name = "commServers", default = 0, doc = "How many of them the start waits for." }
   languages()
   plugin "gamecontrol"
   plugin "simulation-spades"
@@ -155,7 +159,8 @@ function spades(t)
   control.perceptDelay, control.createEffector = 0, t.effector or "SceneEffector"
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
   local schedule = new("SenseSchedule", "/sys/server/gamecontrol/schedule")
-  server.logs = logs
+  server.logs, server.port, server.address, server.commServers = logs, port, address, servers
+  server:setToken(token)
   if database ~= "" then server.database = database end
   local count = 0
   for type in (t.types or ""):gmatch("%S+") do

@@ -22,8 +22,6 @@ namespace spark::spades {
 
 namespace {
 namespace fs = std::filesystem;
-constexpr std::size_t kPrefix = 4;
-
 /// A pipe whose ends are closed in programs that are started.
 std::array<int, 2> makePipe() {
   std::array<int, 2> ends;
@@ -59,8 +57,6 @@ struct Attributes {
 
 AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
   const std::array<int, 2> to = makePipe(), from = makePipe();
-  toAgent_ = to[1];
-  fromAgent_ = from[0];
   const int reads = moveUp(to[0]), writes = moveUp(from[1]);
 
   Actions actions;
@@ -90,17 +86,15 @@ AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
   ::close(reads);
   ::close(writes);
   if (error != 0) {
-    ::close(toAgent_);
-    ::close(fromAgent_);
+    ::close(to[1]);
+    ::close(from[0]);
     throw Error(fmt::format("cannot start '{}' in {}: {}", type.command.front(), type.folder, std::strerror(error)));
   }
-  for (const int end : {toAgent_, fromAgent_}) ::fcntl(end, F_SETFL, ::fcntl(end, F_GETFL) | O_NONBLOCK);
+  pipes_ = std::make_unique<FrameStream>(from[0], to[1]);
 }
 
 AgentProcess::~AgentProcess() {
   if (!ended()) kill();
-  ::close(toAgent_);
-  ::close(fromAgent_);
 }
 
 bool AgentProcess::ended() {
@@ -114,59 +108,19 @@ void AgentProcess::kill() {
 }
 
 void AgentProcess::send(std::string_view message) {
-  if (!lost_.empty()) return;
-  if (out_.size() + message.size() > kMostUnread) return fail("it does not read its messages");
-  for (int shift = 24; shift >= 0; shift -= 8) out_ += static_cast<char>(message.size() >> shift);
-  out_ += message;
-  flush();
+  if (beginsCycle(message)) cpuAtBegin_ = cpuSeconds();
+  pipes_->send(message);
 }
 
-void AgentProcess::flush() {
-  while (!out_.empty()) {
-    // The host ignores SIGPIPE.
-    const ssize_t n = ::write(toAgent_, out_.data(), out_.size());
-    if (n > 0) {
-      out_.erase(0, static_cast<std::size_t>(n));
-    } else if (errno == EAGAIN) {
-      return;
-    } else if (errno != EINTR) {
-      return fail(fmt::format("its pipe is closed: {}", std::strerror(errno)));
-    }
-  }
+std::optional<AgentLink::Message> AgentProcess::receive() {
+  const auto text = pipes_->receive();
+  if (!text) return std::nullopt;
+  return Message{std::string(*text), cpuSeconds() - cpuAtBegin_};
 }
 
-void AgentProcess::poll() {
-  if (!lost_.empty()) return;
-  flush();
-  in_.erase(0, std::exchange(read_, 0));
-  std::array<char, 16384> buffer;
-  while (lost_.empty() && in_.size() <= kMostUnread) {
-    const ssize_t n = ::read(fromAgent_, buffer.data(), buffer.size());
-    if (n > 0) {
-      in_.append(buffer.data(), static_cast<std::size_t>(n));
-    } else if (n == 0) {
-      fail("its program has ended, or closed its pipe");
-    } else if (errno == EAGAIN) {
-      return;
-    } else if (errno != EINTR) {
-      fail(fmt::format("its pipe cannot be read: {}", std::strerror(errno)));
-    }
-  }
-}
-
-std::optional<std::string_view> AgentProcess::receive() {
-  const std::string_view rest = std::string_view(in_).substr(read_);
-  if (rest.size() < kPrefix) return std::nullopt;
-  std::size_t length = 0;
-  for (const char byte : rest.substr(0, kPrefix)) length = length << 8 | static_cast<unsigned char>(byte);
-  if (length > kMostUnread) {
-    fail(fmt::format("it announces a message of {} bytes, at most {} are taken", length, kMostUnread));
-    read_ = in_.size();
-    return std::nullopt;
-  }
-  if (rest.size() - kPrefix < length) return std::nullopt;
-  read_ += kPrefix + length;
-  return rest.substr(kPrefix, length);
+void AgentProcess::addDescriptors(std::vector<pollfd>& out) const {
+  out.push_back({pipes_->input(), POLLIN, 0});
+  if (pipes_->output() >= 0) out.push_back({pipes_->output(), POLLOUT, 0});
 }
 
 double AgentProcess::cpuSeconds() const {

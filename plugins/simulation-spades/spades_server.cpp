@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "agent_process.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -23,13 +24,14 @@ constexpr int kMostWait = 25;                          // ms, so that a request 
 /// An agent: its program, its time, and its side of the connection to the consumer.
 class SpadesServer::Agent final : public IConnection {
  public:
-  Agent(SpadesServer& server, int id, const spades::AgentType& type, const std::string& log)
+  Agent(SpadesServer& server, int id, const std::string& type, const std::string& timer,
+        std::unique_ptr<spades::AgentLink> way)
       : mind(server.latencies_),
-        process(type, log),
-        model(spades::readTimer(type.timer)),
+        link(std::move(way)),
+        model(spades::readTimer(timer)),
         server_(server),
         id_(id),
-        name_(fmt::format("agent {} ({})", id, type.name)) {}
+        name_(fmt::format("agent {} ({})", id, type)) {}
 
   std::uint64_t id() const override { return static_cast<std::uint64_t>(id_) + 1; }
   const std::string& peer() const override { return name_; }
@@ -46,16 +48,15 @@ class SpadesServer::Agent final : public IConnection {
   void lose(std::string_view why) {
     if (!lost.empty()) return;
     lost = why;
-    process.send("X");
+    link->send("X");
   }
 
   AgentMind mind;
-  spades::AgentProcess process;
+  std::unique_ptr<spades::AgentLink> link;
   std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
   std::deque<spades::Act> acts;             ///< on their way, in the order of their time
   std::string lost;                         ///< why; "": it takes part
   bool connected = false;
-  double cpuAtBegin = 0;  ///< of the cycle [s]
   Clock::time_point began{};
 
  private:
@@ -100,6 +101,23 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
       .unit("s")
       .min(0)
       .doc("How long agents may take to end when they are told to (wall time).");
+  d.property("port", &S::port, &S::setPort)
+      .range(-1, 65535)
+      .ofProcess()
+      .doc("TCP port for communication servers; 0: a free one, -1: none.");
+  d.property("address", &S::address_).ofProcess().doc("IPv4 address at which it listens for them.");
+  d.property("commServers", &S::commServers_)
+      .range(0, 1000)
+      .ofProcess()
+      .doc("Number of communication servers that the start of the agents waits for.");
+  d.property("away", &S::away_)
+      .unit("s")
+      .min(0)
+      .doc("How long a communication server may be away before its agents are lost (wall time).");
+  d.method("setToken", &S::setToken)
+      .parameters({"token"})
+      .doc("What communication servers must know; without one, any may join.");
+  d.method("listen", &S::listen).doc("Opens the port for communication servers; otherwise the first poll does.");
   d.property("agents", &S::agentCount).doc("Number of agents now.");
   d.property("lost", &S::lost_).readOnly().doc("Number of agents that were lost.");
   d.method("queueAgents", &S::queueAgents)
@@ -119,7 +137,7 @@ void SpadesServer::setDatabase(std::string file) {
 
 void SpadesServer::queueAgents(const std::string& type, int count) {
   if (stage_ != Stage::queued) throw Error(fmt::format("{}: its agents are started already", path()));
-  if (!types_.contains(type)) {
+  if (!types_.contains(type) && port_ < 0) {
     std::string names;
     for (const auto& [name, unused] : types_) names += (names.empty() ? "" : ", ") + name;
     throw Error(fmt::format("{}: expected an agent type of the database '{}' ({}), found '{}'", path(), database_,
@@ -131,21 +149,52 @@ void SpadesServer::queueAgents(const std::string& type, int count) {
 
 // ---- start and end ----
 
+void SpadesServer::setPort(int port) {
+  if (comm_ && port != comm_->port())
+    throw Error(fmt::format("{}.port: it listens on {} already", path(), comm_->port()));
+  port_ = port;
+}
+
+void SpadesServer::listen() {
+  if (comm_ || port_ < 0 || playing()) return;
+  comm_ = std::make_unique<spades::CommPort>(address_, port_, token_, kernel().log());
+  kernel().log().info("{}: communication servers may join at {}:{}.", path(), address_, comm_->port());
+}
+
 void SpadesServer::start() {
   stage_ = Stage::starting;
   if (!logs_.empty()) std::filesystem::create_directories(logs_);
   for (const auto& [type, count] : queue_) try {
-      for (int i = 0; i < count; ++i) startAgent(types_.at(type));
+      for (int i = 0; i < count; ++i) startAgent(type);
     } catch (const std::exception& e) {
       kernel().log().error("{}: no more agents of type '{}' are started: {}", path(), type, e.what());
     }
 }
 
-void SpadesServer::startAgent(const spades::AgentType& type) {
-  const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, started_);
-  agents_.push_back(std::make_unique<Agent>(*this, started_, type, log));
+/// The communication servers that have a type start its agents in turns.
+spades::CommPort::Server* SpadesServer::serverFor(const std::string& type) {
+  std::vector<spades::CommPort::Server*> able;
+  for (spades::CommPort::Server* server : comm_ ? comm_->servers() : std::vector<spades::CommPort::Server*>())
+    if (server->timerOf(type)) able.push_back(server);
+  return able.empty() ? nullptr : able[next_[type]++ % able.size()];
+}
+
+void SpadesServer::startAgent(const std::string& type) {
+  std::unique_ptr<spades::AgentLink> link;
+  std::string timer;
+  if (spades::CommPort::Server* const server = serverFor(type)) {
+    link = comm_->start(*server, started_, type);
+    timer = *server->timerOf(type);
+  } else if (const auto known = types_.find(type); known != types_.end()) {
+    const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, started_);
+    link = std::make_unique<spades::AgentProcess>(known->second, log);
+    timer = known->second.timer;
+  } else {
+    throw Error("no communication server has this type, nor the database of the host");
+  }
+  agents_.push_back(std::make_unique<Agent>(*this, started_, type, timer, std::move(link)));
   ++started_;
-  agents_.back()->process.send("D");
+  agents_.back()->link->send("D");
   agents_.back()->began = Clock::now();
 }
 
@@ -165,11 +214,13 @@ void SpadesServer::connectAll() {
 }
 
 void SpadesServer::onUnlink() {
-  for (const auto& a : agents_) a->process.send("X");
+  for (const auto& a : agents_) a->link->send("X");
+  if (comm_) comm_->end();
   const auto end = Clock::now() + std::chrono::duration<double>(shutdown_);
-  const auto runs = [](const auto& a) { return !a->process.ended(); };
+  const auto runs = [](const auto& a) { return !a->link->ended(); };
   while (Clock::now() < end && std::any_of(agents_.begin(), agents_.end(), runs)) std::this_thread::sleep_for(kLook);
   agents_.clear();
+  comm_.reset();
 }
 
 /// Writes an input to the tape.
@@ -181,7 +232,13 @@ void SpadesServer::put(Input::Kind kind, const Agent& agent, std::string_view te
 
 void SpadesServer::poll() {
   if (playing()) return;
-  if (stage_ == Stage::queued) start();
+  if (comm_) comm_->poll(away_, stage_ == Stage::queued);
+  if (stage_ == Stage::queued) {
+    listen();
+    const auto servers = comm_ ? comm_->servers().size() : 0;
+    if (servers < static_cast<std::size_t>(commServers_)) return;
+    start();
+  }
   heard_ = false;
   for (const auto& a : agents_) exchange(*a);
   if (stage_ == Stage::starting) connectAll();
@@ -195,20 +252,20 @@ void SpadesServer::poll() {
 
 /// Reads the agent's messages.
 void SpadesServer::exchange(Agent& a) {
-  a.process.poll();
+  a.link->poll();
   const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
-  const auto thought = [&] { return model.thought(a.process.cpuSeconds() - a.cpuAtBegin); };
   while (a.lost.empty()) {
-    const auto message = a.process.receive();
+    const auto message = a.link->receive();
     if (!message) break;
     heard_ = true;
-    switch (a.mind.take(*message)) {
+    const Time thought = model.thought(message->cpuSeconds);
+    switch (a.mind.take(message->text)) {
       case AgentMind::Result::question:
-        a.process.send(fmt::format("C{}", thought()));
+        a.link->send(fmt::format("C{}", thought));
         break;
       case AgentMind::Result::done:
         acts_.clear();
-        a.mind.end(thought(), acts_);
+        a.mind.end(thought, acts_);
         for (spades::Act& act : acts_) a.acts.push_back(std::move(act));
         break;
       case AgentMind::Result::exit:
@@ -219,7 +276,8 @@ void SpadesServer::exchange(Agent& a) {
         break;
     }
   }
-  if (!a.process.lost().empty()) a.lose(a.process.lost());
+  if (!a.link->lost().empty()) a.lose(a.link->lost());
+  if (!a.link->reachable()) a.began = Clock::now();  // it may have answered
   const bool waitedFor = a.mind.thinking() || !a.mind.ready();
   if (waitedFor && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
     a.lose(fmt::format("it thinks for more than {} s", mostThought_));
@@ -231,9 +289,8 @@ void SpadesServer::deliver(Agent& a) {
   const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
   const auto message = a.mind.next(now(), model.least());
   if (!message) return;
-  a.cpuAtBegin = model.fixed ? 0 : a.process.cpuSeconds();
   a.began = Clock::now();
-  a.process.send(*message);
+  a.link->send(*message);
 }
 
 /// Passes the acts that take effect now to the consumer.
@@ -272,10 +329,8 @@ bool SpadesServer::ready(bool) {
 
 bool SpadesServer::wait(double seconds) {
   std::vector<pollfd> waiting;
-  for (const auto& a : agents_) {
-    waiting.push_back({a->process.input(), POLLIN, 0});
-    if (a->process.output() >= 0) waiting.push_back({a->process.output(), POLLOUT, 0});
-  }
+  for (const auto& a : agents_) a->link->addDescriptors(waiting);
+  if (comm_) comm_->addDescriptors(waiting);
   ::poll(waiting.data(), waiting.size(), std::clamp(static_cast<int>(seconds * 1000), 0, kMostWait));
   poll();
   return heard_;

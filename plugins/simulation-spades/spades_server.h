@@ -3,16 +3,17 @@
 /// Agents as the middleware SPADES has them: started by the server, told what they sense, timed by how long they think.
 
 #include <chrono>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "agent_database.h"
 #include "agent_mind.h"
-#include "agent_process.h"
 #include "api/inputs.h"
 #include "api/net.h"
 #include "api/phases.h"
+#include "comm_port.h"
 #include "spark/describe.h"
 #include "think_time.h"
 
@@ -48,7 +49,8 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   bool playing() const { return tape_ && tape_->playing(); }
   spades::Time now() const { return simulation_ ? simulation_->cycle() : 0; }
   void start();
-  void startAgent(const spades::AgentType& type);
+  void startAgent(const std::string& type);
+  spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
   void exchange(Agent& agent);
   void deliver(Agent& agent);
@@ -63,12 +65,20 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   int actLatency() const { return static_cast<int>(latencies_.act); }
   int agentCount() const { return static_cast<int>(agents_.size()); }
   const std::string& database() const { return database_; }
+  int port() const { return comm_ ? comm_->port() : port_; }
+  void setToken(std::string token) { token_ = std::move(token); }
+  void setPort(int port);
+  void listen();
   const std::string& consumer() const { return consumerPath_; }
   void setConsumer(std::string path);
 
   spades::Latencies latencies_;
   std::string database_, logs_, consumerPath_ = "/sys/server/gamecontrol";
-  double mostThought_ = 10, shutdown_ = 2;
+  double mostThought_ = 10, shutdown_ = 2, away_ = 30;
+  std::string address_ = "127.0.0.1", token_;
+  int port_ = -1, commServers_ = 0;
+  std::unique_ptr<spades::CommPort> comm_;   ///< nullptr: agents of this machine only
+  std::map<std::string, std::size_t> next_;  ///< by type: of the servers that have it, which starts the next agent
   std::map<std::string, spades::AgentType> types_;
   std::vector<std::pair<std::string, int>> queue_;
   std::vector<std::unique_ptr<Agent>> agents_;  ///< in order of id

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "process.h"
@@ -15,38 +16,26 @@ namespace {
 struct OldMatch {
   TemporaryFolder folder;
   std::vector<std::string> arguments;
-  std::string red = "Red", blue = "Blue", timer = "fixed 3";
+  std::string red = "Red", blue = "Blue", timer = "fixed 3", level = "warning";
   int players = 4, seconds = 20;
 
-  Finished play() {
+  /// The agent database as a file.
+  std::string database() const {
     std::string xml = "<agentdb>";
     for (const auto& [type, line] : {std::pair{"red", red}, std::pair{"blue", blue}})
       xml += "<agent_type_external name='" + std::string(type) + "'><timer>" + timer + "</timer><working_dir>" +
              binFolder().string() + "</working_dir><exec_line>spades-agent " + line +
              "</exec_line></agent_type_external>";
-    return runToEnd(joined({program("sparkhost"),
-                            "--config",
-                            "soccer-2004.lua",
-                            "--set",
-                            "agents=red blue",
-                            "--set",
-                            "players=" + std::to_string(players),
-                            "--set",
-                            "agentDatabase=" + folder.write("agentdb.xml", xml + "</agentdb>"),
-                            "--rate",
-                            "max",
-                            "--duration",
-                            std::to_string(seconds),
-                            "--seed",
-                            "3",
-                            "--set",
-                            "web=false",
-                            "--monitor-port",
-                            "0",
-                            "--log-level",
-                            "warning"},
-                           arguments));
+    return folder.write("agentdb.xml", xml + "</agentdb>");
   }
+  std::vector<std::string> command() const {
+    const std::string count = "players=" + std::to_string(players), duration = std::to_string(seconds);
+    return joined({program("sparkhost"), "--config", "soccer-2004.lua", "--set", "agents=red blue", "--set", count,
+                   "--rate", "max", "--duration", duration, "--seed", "3", "--set", "web=false", "--monitor-port", "0",
+                   "--log-level", level},
+                  arguments);
+  }
+  Finished play() const { return runToEnd(joined(command(), {"--set", "agentDatabase=" + database()})); }
   Json result() {
     const Finished f = play();
     CAPTURE(f.errors);
@@ -86,4 +75,51 @@ TEST_CASE("An agent that hangs in a match of 2004 is lost alone, at the same ste
   const Json first = Json::parse(f.out.substr(f.out.find('\n') + 1));
   REQUIRE(first["agentsSeen"] == 8);
   REQUIRE(m.result()["stateHash"] == first["stateHash"]);
+}
+
+TEST_CASE("Agents of two communication servers play the same match as those of the host") {
+  OldMatch m;
+  const std::string reference = m.result()["stateHash"];
+  m.arguments = {"--set", "commPort=0", "--set", "commServers=2", "--set", "commToken=0123456789abcdef"};
+  Process host(m.command());
+  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
+  const auto server = [&](const char* name) {
+    return std::vector<std::string>{program("sparkcomm"), "--port", port, "--database",
+                                    m.database(),         "--name", name, "--token",
+                                    "0123456789abcdef"};
+  };
+  std::vector<std::string> stranger = server("stranger");
+  stranger.back() = "guessed-by-chance";
+  const Finished refused = runToEnd(stranger);
+  CHECK(refused.code == 1);
+  CHECK_THAT(refused.errors, Contains("refused: its token is wrong"));
+  Process one(server("one")), two(server("two"));
+  const Json result = Json::parse(host.line());
+  CAPTURE(host.errors(), one.errors(), two.errors());
+  REQUIRE(host.wait() == 0);
+  REQUIRE(one.wait() == 0);
+  REQUIRE(two.wait() == 0);
+  REQUIRE(result["agentsSeen"] == 8);
+  REQUIRE(result["stateHash"] == reference);
+}
+
+TEST_CASE("A communication server that is killed takes its agents with it, and the match goes on") {
+  OldMatch m;
+  m.seconds = 600;
+  m.level = "info";
+  m.arguments = {"--set", "commPort=0", "--set", "commServers=2", "--set", "/sys/server/spades.away=0.2"};
+  Process host(m.command());
+  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
+  const auto server = [&](const char* name) {
+    return std::vector<std::string>{program("sparkcomm"), "--port", port, "--database", m.database(), "--name", name};
+  };
+  Process one(server("one"));
+  Process two(server("two"));
+  host.waitForError("8 agents take part");
+  two.signal(SIGKILL);
+  const Json result = Json::parse(host.line());
+  REQUIRE(host.wait() == 0);
+  CHECK(result["simSeconds"] == Approx(600));
+  CHECK_THAT(host.errors(), Contains("Communication server two is away") && Contains("is away for more than 0.2 s"));
+  CHECK(one.wait() == 0);
 }

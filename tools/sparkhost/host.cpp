@@ -134,13 +134,14 @@ std::string Host::open() {
     throw Error(fmt::format("config '{}' has no run loop: expected a node {}. Add simulation() of house.lua.",
                             options_.config, kSimulation));
   const Node& root = kernel_.root();
-  for (const char* path : {kNet, kWeb})
+  for (const char* path : {kNet, kWeb, kSpades})
     if (Leaf* server = root.find(path)) callMethod(*server, "listen", {});
   std::string line;
   JsonWriter json(line);
   json.beginObject();
   writePort(json, "agent", root, "/sys/server/net/agents");
   writePort(json, "monitor", root, "/sys/server/net/monitors");
+  if (root.find(kSpades)) writePort(json, "comm", root, kSpades);
   writeWeb(json, root);
   json.endObject();
   return line;

@@ -12,6 +12,7 @@ namespace sparkhost {
 
 inline constexpr const char* kSimulation = "/sys/server/simulation";
 inline constexpr const char* kNet = "/sys/server/net";
+inline constexpr const char* kSpades = "/sys/server/spades";
 inline constexpr const char* kWeb = "/sys/server/web";
 inline constexpr const char* kGameControl = "/sys/server/gamecontrol";
 

@@ -120,8 +120,8 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
   f.run(100);
   REQUIRE(f.linesWith("(drive").size() == 4);  // of good and forks
   REQUIRE(f.listener->agents.size() == 2);
-  for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed its pipe",
-                           "agent 2 (quits) is lost at step 44: its program has ended, or closed its pipe",
+  for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed the connection",
+                           "agent 2 (quits) is lost at step 44: its program has ended, or closed the connection",
                            "agent 3 (garbles) is lost at step 44: it announces a message of 4294967295 bytes",
                            "agent 5 (hangs) is lost at step 44: it thinks for more than 0.5 s"}) {
     CAPTURE(line);

@@ -1,0 +1,202 @@
+#include "comm_port.h"
+
+#include <arpa/inet.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <deque>
+
+#include "api/credentials.h"
+#include "spark/error.h"
+#include "spark/log.h"
+
+namespace spark::spades {
+
+namespace {
+using Clock = std::chrono::steady_clock;
+constexpr std::size_t kMostNewcomers = 64;
+}  // namespace
+
+/// An agent that a communication server runs.
+class RemoteAgent final : public AgentLink {
+ public:
+  RemoteAgent(CommPort::Server& server, int id) : server_(server), id_(static_cast<std::uint64_t>(id)) {
+    server_.agents_[id_] = this;
+  }
+  ~RemoteAgent() override { server_.agents_.erase(id_); }
+  void send(std::string_view message) override { server_.channel_.send(fmt::format("to {} {}", id_, message)); }
+  void poll() override {}  // the port does
+  std::optional<Message> receive() override {
+    if (messages_.empty()) return std::nullopt;
+    Message m = std::move(messages_.front());
+    messages_.pop_front();
+    return m;
+  }
+  const std::string& lost() const override { return lost_; }
+  bool reachable() const override { return server_.connected(); }
+  bool ended() override { return true; }  // its server ends it
+  void addDescriptors(std::vector<pollfd>&) const override {}
+
+  void put(Message message) { messages_.push_back(std::move(message)); }
+  void lose(std::string why) {
+    if (lost_.empty()) lost_ = std::move(why);
+  }
+
+ private:
+  CommPort::Server& server_;
+  const std::uint64_t id_;
+  std::deque<Message> messages_;
+  std::string lost_;
+};
+
+const std::string* CommPort::Server::timerOf(const std::string& type) const {
+  for (const auto& [name, timer] : hello_.types)
+    if (name == type) return &timer;
+  return nullptr;
+}
+
+CommPort::CommPort(const std::string& address, int port, std::string token, Log& log)
+    : token_(std::move(token)), log_(log) {
+  sockaddr_in at = {};
+  at.sin_family = AF_INET;
+  at.sin_port = htons(static_cast<std::uint16_t>(port));
+  if (::inet_pton(AF_INET, address.c_str(), &at.sin_addr) != 1)
+    throw Error(fmt::format("expected an IPv4 address for communication servers such as 0.0.0.0, found '{}'", address));
+  listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  const int on = 1;
+  ::setsockopt(listener_, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
+  socklen_t size = sizeof at;
+  if (::bind(listener_, reinterpret_cast<const sockaddr*>(&at), size) != 0 || ::listen(listener_, SOMAXCONN) != 0 ||
+      ::getsockname(listener_, reinterpret_cast<sockaddr*>(&at), &size) != 0) {
+    const int error = errno;
+    ::close(listener_);
+    throw Error(
+        fmt::format("cannot listen for communication servers at {}:{}: {}", address, port, std::strerror(error)));
+  }
+  port_ = ntohs(at.sin_port);
+}
+
+CommPort::~CommPort() { ::close(listener_); }
+
+void CommPort::poll(double patience, bool open) {
+  accept();
+  greet(open);
+  for (const auto& [session, server] : servers_) {
+    const bool was = server->connected();
+    try {
+      server->channel_.poll();
+      dispatch(*server);
+    } catch (const std::exception& e) {
+      server->channel_.close(e.what());
+    }
+    if (was && !server->connected()) {
+      server->goneAt_ = Clock::now();
+      log_.warning("Communication server {} is away: {}.", server->name(), server->channel_.lost());
+    }
+    checkAway(*server, patience);
+  }
+}
+
+void CommPort::accept() {
+  while (newcomers_.size() < kMostNewcomers) {
+    const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (socket < 0) return;
+    const int on = 1;
+    ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+    newcomers_.push_back(std::make_unique<FrameStream>(socket, socket));
+  }
+}
+
+void CommPort::greet(bool open) {
+  for (auto& stream : newcomers_) {
+    stream->poll();
+    if (const auto frame = stream->receive()) {
+      try {
+        welcome(stream, *frame, open);
+      } catch (const std::exception& e) {
+        log_.warning("A communication server is refused: {}", e.what());
+        stream->send(std::string(1, kRefused) + e.what());
+        stream.reset();
+      }
+    } else if (!stream->lost().empty()) {
+      stream.reset();
+    }
+  }
+  std::erase(newcomers_, nullptr);
+}
+
+void CommPort::welcome(std::unique_ptr<FrameStream>& stream, std::string_view frame, bool open) {
+  const CommHello hello = CommHello::read(frame);
+  if (!token_.empty() && !isToken(token_, hello.token)) throw Error("its token is wrong");
+  const auto known = servers_.find(hello.session);
+  if (known == servers_.end() && !open) throw Error("the agents are started already");
+  if (known != servers_.end() && known->second->given_) throw Error("it was away for too long, its agents are lost");
+  Server& server =
+      known != servers_.end() ? *known->second : *(servers_[hello.session] = std::make_unique<Server>(hello));
+  log_.info("Communication server {} {}.", server.name(), known == servers_.end() ? "is there" : "is back");
+  stream->send(fmt::format("{}{}", kWelcome, server.channel_.received()));
+  server.channel_.attach(std::move(stream), hello.received);
+}
+
+/// Passes what a server says about its agents on.
+void CommPort::dispatch(Server& server) {
+  while (const auto message = server.channel_.receive()) {
+    const auto [word, rest] = splitWord(*message);
+    const auto [id, text] = splitWord(rest);
+    const auto agent = server.agents_.find(numberOf(id));
+    if (agent == server.agents_.end()) continue;  // it is removed
+    if (word == "from") {
+      const auto [time, words] = splitWord(text);
+      agent->second->put({std::string(words), 1e-6 * static_cast<double>(numberOf(time))});
+    } else if (word == "lost") {
+      agent->second->lose(std::string(text));
+    }
+  }
+}
+
+void CommPort::checkAway(Server& server, double patience) {
+  if (server.connected() || server.given_) return;
+  if (std::chrono::duration<double>(Clock::now() - server.goneAt_).count() < patience) return;
+  server.given_ = true;
+  for (const auto& [id, agent] : server.agents_)
+    agent->lose(fmt::format("its communication server {} is away for more than {} s", server.name(), patience));
+}
+
+std::vector<CommPort::Server*> CommPort::servers() const {
+  std::vector<Server*> out;
+  for (const auto& [session, server] : servers_) out.push_back(server.get());
+  std::sort(out.begin(), out.end(), [](const Server* a, const Server* b) { return a->name() < b->name(); });
+  return out;
+}
+
+std::unique_ptr<AgentLink> CommPort::start(Server& server, int id, const std::string& type) {
+  auto agent = std::make_unique<RemoteAgent>(server, id);
+  server.channel_.send(fmt::format("start {} {}", id, type));
+  return agent;
+}
+
+void CommPort::end() {
+  for (const auto& [session, server] : servers_) {
+    server->channel_.send("end");
+    server->channel_.poll();
+  }
+}
+
+void CommPort::addDescriptors(std::vector<pollfd>& out) const {
+  out.push_back({listener_, POLLIN, 0});
+  const auto add = [&out](const FrameStream* s) {
+    if (!s) return;
+    out.push_back({s->input(), POLLIN, 0});
+    if (s->output() >= 0) out.push_back({s->output(), POLLOUT, 0});
+  };
+  for (const auto& stream : newcomers_) add(stream.get());
+  for (const auto& [session, server] : servers_) add(server->channel_.stream());
+}
+
+}  // namespace spark::spades
