@@ -93,18 +93,17 @@ AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
   pipes_ = std::make_unique<FrameStream>(from[0], to[1]);
 }
 
-AgentProcess::~AgentProcess() {
-  if (!ended()) kill();
-}
+AgentProcess::~AgentProcess() { kill(); }
 
 bool AgentProcess::ended() {
-  if (!reaped_ && ::waitpid(pid_, nullptr, WNOHANG) == pid_) reaped_ = true;
-  return reaped_;
+  // It is reaped in kill() only: until then no other group can have its number.
+  siginfo_t info = {};
+  return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
 }
 
 void AgentProcess::kill() {
   ::kill(-pid_, SIGKILL);
-  if (!reaped_) reaped_ = ::waitpid(pid_, nullptr, 0) == pid_;
+  ::waitpid(pid_, nullptr, 0);
 }
 
 void AgentProcess::send(std::string_view message) {

@@ -13,7 +13,7 @@
 
 namespace spark::spades {
 
-/// A running program. Ends it when it is destroyed: it should have got the message X before.
+/// A running program. Ends it, and what it has started, when it is destroyed: it should have got the message X before.
 class AgentProcess final : public AgentLink {
  public:
   /// Starts the program; what it prints goes to `log`-stdout.log and `log`-stderr.log, or nowhere if `log` is empty.
@@ -29,14 +29,13 @@ class AgentProcess final : public AgentLink {
   const std::string& lost() const override { return pipes_->lost(); }
   bool ended() override;
   void addDescriptors(std::vector<pollfd>& out) const override;
-  /// Ends the program and its children at once.
-  void kill();
 
  private:
+  /// Ends the program and what it has started.
+  void kill();
   /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
   double cpuSeconds() const;
   pid_t pid_ = -1;
-  bool reaped_ = false;
   double cpuAtBegin_ = 0;
   std::unique_ptr<FrameStream> pipes_;
 };

@@ -95,7 +95,7 @@ void CommPort::poll(double patience, bool open) {
     } catch (const std::exception& e) {
       server->channel_.close(e.what());
     }
-    if (was && !server->connected()) {
+    if (was && !server->connected() && !over_) {
       server->goneAt_ = Clock::now();
       log_.warning("Communication server {} is away: {}.", server->name(), server->channel_.lost());
     }
@@ -181,7 +181,12 @@ std::unique_ptr<AgentLink> CommPort::start(Server& server, int id, const std::st
   return agent;
 }
 
+bool CommPort::hasServers() const {
+  return std::any_of(servers_.begin(), servers_.end(), [](const auto& s) { return s.second->connected(); });
+}
+
 void CommPort::end() {
+  over_ = true;
   for (const auto& [session, server] : servers_) {
     server->channel_.send("end");
     server->channel_.poll();

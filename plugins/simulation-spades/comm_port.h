@@ -54,8 +54,10 @@ class CommPort {
   std::vector<Server*> servers() const;
   /// Starts an agent there. The server must outlive it.
   std::unique_ptr<AgentLink> start(Server& server, int id, const std::string& type);
-  /// Tells all servers that the simulation is over.
+  /// Tells all servers that the simulation is over; each leaves then.
   void end();
+  /// True while one of them has not left. A connection that is closed before could lose what was sent last.
+  bool hasServers() const;
   void addDescriptors(std::vector<pollfd>& out) const;
 
  private:
@@ -67,6 +69,7 @@ class CommPort {
   void checkAway(Server& server, double patience);
 
   int listener_ = -1, port_ = 0;
+  bool over_ = false;
   const std::string token_;
   Log& log_;
   std::vector<std::unique_ptr<FrameStream>> newcomers_;     ///< without a hello yet

@@ -131,7 +131,7 @@ void SpadesServer::setConsumer(std::string path) {
 }
 
 void SpadesServer::setDatabase(std::string file) {
-  types_ = spades::readAgentDatabase(file);
+  types_ = file.empty() ? std::map<std::string, spades::AgentType>() : spades::readAgentDatabase(file);
   database_ = std::move(file);
 }
 
@@ -218,7 +218,10 @@ void SpadesServer::onUnlink() {
   if (comm_) comm_->end();
   const auto end = Clock::now() + std::chrono::duration<double>(shutdown_);
   const auto runs = [](const auto& a) { return !a->link->ended(); };
-  while (Clock::now() < end && std::any_of(agents_.begin(), agents_.end(), runs)) std::this_thread::sleep_for(kLook);
+  while (Clock::now() < end && (std::any_of(agents_.begin(), agents_.end(), runs) || (comm_ && comm_->hasServers()))) {
+    if (comm_) comm_->poll(away_, false);
+    std::this_thread::sleep_for(kLook);
+  }
   agents_.clear();
   comm_.reset();
 }
@@ -322,7 +325,7 @@ void SpadesServer::removeLost() {
 }
 
 bool SpadesServer::ready(bool) {
-  if (playing()) return true;
+  if (playing() || (stage_ == Stage::queued && queue_.empty())) return true;  // without agents it holds nothing
   return stage_ == Stage::running &&
          std::all_of(agents_.begin(), agents_.end(), [this](const auto& a) { return a->mind.horizon() > now(); });
 }

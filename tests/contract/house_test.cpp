@@ -162,8 +162,8 @@ TEST_CASE("Each property that can be set is in the hash of the state or in that 
     guest->parent()->remove(*guest);
   }
   CHECK(changed > 300);
-  CHECK(inNone == std::set<std::string>{"address", "arguments", "file", "level", "path", "port", "time", "viewer",
-                                        "viewerLacks", "whilePlayed"});
+  CHECK(inNone == std::set<std::string>{"address", "arguments", "commServers", "database", "file", "level", "logs",
+                                        "path", "port", "time", "viewer", "viewerLacks", "whilePlayed"});
 }
 
 TEST_CASE("A run leaves the configuration as it is") {

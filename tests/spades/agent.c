@@ -70,8 +70,13 @@ int main(int argc, char** argv) {
   int sensations = 0;
   printf("%s plays\n", team);
   fflush(stdout);
-  if (strcmp(way, "fork") == 0 && fork() == 0)
-    for (;;) pause();
+  if (strcmp(way, "fork") == 0) {
+    const int child = fork();
+    if (child == 0)
+      for (;;) pause();
+    printf("child=%d\n", child);
+    fflush(stdout);
+  }
   for (;;) {
     receive();
     if (message[0] == 'D') sendText("I");

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <fstream>
+#include <sstream>
 
 #include "api/files.h"
 #include "temporary_folder.h"
@@ -102,4 +103,23 @@ TEST_CASE("a damaged member is refused completely") {
   f.write("\x55\xaa\x55\xaa", 4);
   f.close();
   CHECK(a.errorOf("x").find("cannot read 'x'") != std::string::npos);
+}
+
+TEST_CASE("a zip bomb is refused, also one that lies about its size") {
+  Archive a;
+  a.write({{"robot.rsg", std::string(32u << 20, ' ')}});
+  REQUIRE(fs::file_size(a.file) < 100000);
+  CHECK(a.errorOf("robot.rsg").find("too large: 33554432 bytes") != std::string::npos);
+
+  // Its unpacked size stands in the member's own header and in the directory of the archive.
+  std::stringstream bytes;
+  bytes << std::ifstream(a.file, std::ios::binary).rdbuf();
+  std::string archive = bytes.str();
+  for (const auto& [mark, offset] : {std::pair{"PK\3\4", 22}, std::pair{"PK\1\2", 24}}) {
+    const std::size_t at = archive.find(mark);
+    REQUIRE(at != std::string::npos);
+    archive.replace(at + static_cast<std::size_t>(offset), 4, std::string("\x64\0\0\0", 4));
+  }
+  std::ofstream(a.file, std::ios::binary) << archive;
+  CHECK(a.errorOf("robot.rsg").find("cannot read 'robot.rsg'") != std::string::npos);
 }

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <csignal>
 #include <fstream>
 
 #include "api/net.h"
@@ -127,6 +128,25 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
     CAPTURE(line);
     CHECK_THAT(f.host.text, Catch::Contains(line));
   }
+}
+
+TEST_CASE("What an agent has started ends with it") {
+  pid_t child = 0;
+  {
+    Field f(Field::Types{{"forks", "Bad fork"}});
+    f.run(30);
+    std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
+    for (std::string word; log >> word && child == 0;)
+      if (word.starts_with("child=")) child = std::stoi(word.substr(6));
+    REQUIRE(child > 0);
+    REQUIRE(::kill(child, 0) == 0);
+  }
+  // It is a zombie at most, until its new parent looks.
+  std::ifstream status("/proc/" + std::to_string(child) + "/stat");
+  std::string text;
+  std::getline(status, text);
+  CAPTURE(text);
+  REQUIRE((text.empty() || text.find(") Z") != text.npos || text.find(") X") != text.npos));
 }
 
 TEST_CASE("Who thinks longer acts later, and all think at the same time") {
