@@ -137,11 +137,22 @@ void CommPort::welcome(std::unique_ptr<FrameStream>& stream, std::string_view fr
   const auto known = servers_.find(hello.session);
   if (known == servers_.end() && !open) throw Error("the agents are started already");
   if (known != servers_.end() && known->second->given_) throw Error("it was away for too long, its agents are lost");
+  if (known == servers_.end()) expectNewName(hello.name);
   Server& server =
       known != servers_.end() ? *known->second : *(servers_[hello.session] = std::make_unique<Server>(hello));
   log_.info("Communication server {} {}.", server.name(), known == servers_.end() ? "is there" : "is back");
   stream->send(fmt::format("{}{}", kWelcome, server.channel_.received()));
   server.channel_.attach(std::move(stream), hello.received);
+}
+
+/// Names decide which server starts which agent. One that went away before the start may come again.
+void CommPort::expectNewName(const std::string& name) {
+  const auto same =
+      std::find_if(servers_.begin(), servers_.end(), [&](const auto& s) { return s.second->name() == name; });
+  if (same == servers_.end()) return;
+  if (same->second->connected())
+    throw Error(fmt::format("there is a server '{}' already: give this one another --name", name));
+  servers_.erase(same);
 }
 
 /// Passes what a server says about its agents on.

@@ -65,6 +65,8 @@ class CommPort {
   void greet(bool open);
   /// Answers a hello. Throws Error if the server is refused.
   void welcome(std::unique_ptr<FrameStream>& stream, std::string_view frame, bool open);
+  /// Throws Error if a server of that name is there.
+  void expectNewName(const std::string& name);
   void dispatch(Server& server);
   void checkAway(Server& server, double patience);
 

@@ -283,7 +283,7 @@ void SpadesServer::exchange(Agent& a) {
   if (!a.link->reachable()) a.began = Clock::now();  // it may have answered
   const bool waitedFor = a.mind.thinking() || !a.mind.ready();
   if (waitedFor && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
-    a.lose(fmt::format("it thinks for more than {} s", mostThought_));
+    a.lose(fmt::format("it {} for more than {} s", a.mind.ready() ? "thinks" : "says nothing", mostThought_));
 }
 
 /// Passes the next message to the agent that is due.

@@ -80,6 +80,7 @@ TEST_CASE("An agent that hangs in a match of 2004 is lost alone, at the same ste
 TEST_CASE("Agents of two communication servers play the same match as those of the host") {
   OldMatch m;
   const std::string reference = m.result()["stateHash"];
+  m.level = "info";
   m.arguments = {"--set", "commPort=0", "--set", "commServers=2", "--set", "commToken=0123456789abcdef"};
   Process host(m.command());
   const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
@@ -93,7 +94,12 @@ TEST_CASE("Agents of two communication servers play the same match as those of t
   const Finished refused = runToEnd(stranger);
   CHECK(refused.code == 1);
   CHECK_THAT(refused.errors, Contains("refused: its token is wrong"));
-  Process one(server("one")), two(server("two"));
+  Process one(server("one"));
+  host.waitForError("Communication server one is there");
+  const Finished twin = runToEnd(server("one"));
+  CHECK(twin.code == 1);
+  CHECK_THAT(twin.errors, Contains("refused: there is a server 'one' already: give this one another --name"));
+  Process two(server("two"));
   const Json result = Json::parse(host.line());
   CAPTURE(host.errors(), one.errors(), two.errors());
   REQUIRE(host.wait() == 0);
