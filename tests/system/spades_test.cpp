@@ -68,10 +68,10 @@ TEST_CASE("An agent that hangs in a match of 2004 is lost alone, at the same ste
   OldMatch m;
   m.seconds = 4;
   m.blue = "Blue hang 5";
-  m.arguments = {"--set", "/sys/server/spades.mostThought=0.3"};
+  m.arguments = {"--set", "/sys/server/spades.mostThought=5"};
   const Finished f = m.play();
   REQUIRE(f.code == 0);
-  CHECK_THAT(f.errors, Contains("agent 4 (blue) is lost at step ") && Contains("it thinks for more than 0.3 s"));
+  CHECK_THAT(f.errors, Contains("agent 4 (blue) is lost at step ") && Contains("it thinks for more than 5 s"));
   const Json first = Json::parse(f.out.substr(f.out.find('\n') + 1));
   REQUIRE(first["agentsSeen"] == 8);
   REQUIRE(m.result()["stateHash"] == first["stateHash"]);

@@ -117,14 +117,14 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
                        {"garbles", "Bad garbage 2"},
                        {"forks", "Bad fork"},
                        {"hangs", "Bad hang 2"}});
-  f.set("/sys/server/spades", "mostThought", 0.5);
+  f.set("/sys/server/spades", "mostThought", 5.0);
   f.run(100);
   REQUIRE(f.linesWith("(drive").size() == 4);  // of good and forks
   REQUIRE(f.listener->agents.size() == 2);
   for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed the connection",
                            "agent 2 (quits) is lost at step 44: its program has ended, or closed the connection",
                            "agent 3 (garbles) is lost at step 44: it announces a message of 4294967295 bytes",
-                           "agent 5 (hangs) is lost at step 44: it thinks for more than 0.5 s"}) {
+                           "agent 5 (hangs) is lost at step 44: it thinks for more than 5 s"}) {
     CAPTURE(line);
     CHECK_THAT(f.host.text, Catch::Contains(line));
   }
