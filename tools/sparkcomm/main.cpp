@@ -17,6 +17,7 @@ std::string nameOfMachine() {
 }
 }  // namespace
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options that are set up wrongly end the program
 int main(int argc, char** argv) {
   spark::spades::CommServer::Options options;
   options.name = nameOfMachine();
