@@ -66,9 +66,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Node& server = kernel.create<Node>("Node", "/sys/server/remote");
   Node& mount = kernel.create<Node>("Node", "/usr/mount");
   kernel.create("Node", "/usr/a/b");
-  const remote::Patience patience;
+  const Link<IInputTape> noTape;
+  const remote::Host host{server, noTape, {}};
   remote::Mirror mirror(mount);
-  remote::Session session(server, patience, 1, nullptr, "fuzz");
+  remote::Session session(host, 1, nullptr, "fuzz");
   try {
     mirror.follow(remote::decode({reinterpret_cast<const char*>(data), size}));
   } catch (const Error&) {
