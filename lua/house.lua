@@ -131,9 +131,9 @@ function agents(t)
   local server = new("GameControl", "/sys/server/gamecontrol")
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
   local framing = option{ name = "agentFraming", default = "LengthPrefixFraming",
-                          doc = "How bytes become messages of agents: LengthPrefixFraming, or LineFraming for one per line." }
+                          doc = "How bytes become messages: LengthPrefixFraming, or LineFraming, one per line." }
   local socket  = option{ name = "agentSocket", default = "",
-                          doc = "File of a Unix socket for agents of this machine, in place of the TCP port; empty: TCP." }
+                          doc = "Unix socket for agents of this machine, in place of the TCP port; empty: TCP." }
   agentPort("agents", t.port or 3100, nil, framing, socket)
   return server
 end
@@ -143,9 +143,9 @@ end
 --- agents of each; `parser`: class of their language; `effector`: class of the effector that they have from the start.
 function spades(t)
   local database = option{ name = "agentDatabase", default = "", doc = "XML file that says which programs are agents." }
-  local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: it is dropped." }
+  local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: none." }
   local think    = option{ name = "thinkTime", default = "FixedThinkTime",
-                           doc = "How long agents think: FixedThinkTime, or CpuThinkTime for the CPU time that they use." }
+                           doc = "How long agents think: FixedThinkTime, or CpuThinkTime, which measures it." }
   local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
   local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
   local token    = option{ name = "commToken", default = "", doc = "What they must know; empty: nothing." }

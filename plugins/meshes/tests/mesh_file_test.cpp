@@ -75,7 +75,7 @@ TEST_CASE("A mesh file without triangles, or of an unknown kind, is refused with
   CHECK_THROWS_AS(readMesh("a.stl", "no mesh"), Error);
   CHECK_THROWS_WITH(readMesh("a.txt", kObj), Catch::Contains("such as .obj, .stl, .dae, .glb or .msh, found '.txt'"));
   CHECK_THROWS_WITH(readMesh("a", stl()), Catch::Contains("expected a mesh file of a known kind"));
-  // It would be read as what it is, by a reader that nobody asked for.
+  // The ending of its name, not its content, selects the reader.
   CHECK_THROWS_AS(readMesh("a.glb", kObj), Error);
 }
 
