@@ -273,8 +273,8 @@ class IGameControl {
   /// Wall time from sending percepts to the agent's next message [s], smoothed over some 16 messages. NaN when it is
   /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
-  /// For a snapshot that is restored: all agents leave the scene at once, as control aspects see it. Those who are
-  /// connected stay so until the state of game control is loaded.
+  /// For a snapshot that is restored: all agents leave the scene at once, as control aspects see it. Clients
+  /// stay connected until the state of game control is loaded.
   virtual void withdrawAgents() = 0;
   /// For a snapshot that is restored: an agent joins again as it did, below `parent`; control aspects make what they
   /// made then.

@@ -14,8 +14,8 @@
 
 namespace spark {
 
-/// Channel of an event behind each restored snapshot, before anything else happens: whoever has taken over loaded state
-/// only in part takes the rest. Defined by Snapshots.
+/// Channel of an event behind each restored snapshot, before anything else happens: nodes that have restored their
+/// loaded state only in part restore the rest. Defined by Snapshots.
 inline constexpr ChannelName kRestored{"restored"};
 
 /// What the run has added to the tree, and all settings; opaque.

@@ -118,6 +118,7 @@ std::optional<AgentLink::Message> AgentProcess::receive() {
 }
 
 void AgentProcess::addDescriptors(std::vector<pollfd>& out) const {
+  if (!lost().empty()) return;  // a closed pipe would be ready all the time
   out.push_back({pipes_->input(), POLLIN, 0});
   if (pipes_->output() >= 0) out.push_back({pipes_->output(), POLLOUT, 0});
 }

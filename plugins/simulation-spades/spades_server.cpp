@@ -43,7 +43,11 @@ class SpadesServer::Agent final : public IConnection {
   }
   bool idle() const override { return true; }
   double stalledSeconds() const override { return 0; }
-  void close(std::string_view reason) override { lose(reason); }
+  /// The consumer decides it within a cycle, so it is the same in every run: it takes effect at once.
+  void close(std::string_view reason) override {
+    lose(reason);
+    closed = true;
+  }
   /// The agent takes part no longer.
   void lose(std::string_view why) {
     if (!lost.empty()) return;
@@ -56,7 +60,7 @@ class SpadesServer::Agent final : public IConnection {
   std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
   std::deque<spades::Act> acts;             ///< on their way, in the order of their time
   std::string lost;                         ///< why; "": it takes part
-  bool connected = false;
+  bool connected = false, closed = false;
   Clock::time_point began{};
 
  private:
@@ -246,17 +250,22 @@ void SpadesServer::poll() {
   for (const auto& a : agents_) exchange(*a);
   if (stage_ == Stage::starting) connectAll();
   if (stage_ == Stage::running)
-    for (const auto& a : agents_) {
-      deliver(*a);
-      feed(*a);
-    }
+    for (const auto& a : agents_) deliver(*a);
+  // All acts of this step are known: they take effect in the order of agents, not of their messages.
+  const auto settled = [this](const auto& a) { return !a->lost.empty() || a->mind.horizon() > now(); };
+  if (!std::all_of(agents_.begin(), agents_.end(), settled)) return;
+  for (const auto& a : agents_) feed(*a);
   removeLost();
+}
+
+spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
+  return a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
 }
 
 /// Reads the agent's messages.
 void SpadesServer::exchange(Agent& a) {
   a.link->poll();
-  const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
+  const spades::ThinkModel model = modelOf(a);
   while (a.lost.empty()) {
     const auto message = a.link->receive();
     if (!message) break;
@@ -288,9 +297,8 @@ void SpadesServer::exchange(Agent& a) {
 
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
-  if (!a.lost.empty()) return;
-  const spades::ThinkModel model = a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
-  const auto message = a.mind.next(now(), model.least());
+  if (a.closed) return;
+  const auto message = a.mind.next(now(), modelOf(a).least());
   if (!message) return;
   a.began = Clock::now();
   a.link->send(*message);
@@ -298,8 +306,7 @@ void SpadesServer::deliver(Agent& a) {
 
 /// Passes the acts that take effect now to the consumer.
 void SpadesServer::feed(Agent& a) {
-  for (; a.connected && a.lost.empty() && consumer_ && !a.acts.empty() && a.acts.front().due <= now();
-       a.acts.pop_front()) {
+  for (; a.connected && !a.closed && consumer_ && !a.acts.empty() && a.acts.front().due <= now(); a.acts.pop_front()) {
     put(Input::Kind::message, a, a.acts.front().data);
     consumer_->received(a, a.acts.front().data);
   }
@@ -308,9 +315,10 @@ void SpadesServer::feed(Agent& a) {
 void SpadesServer::removeLost() {
   for (std::size_t i = 0; i < agents_.size();) {
     Agent& a = *agents_[i];
-    // One that is lost while it thinks is missed when the world can go on no longer without it: always at the same
-    // step.
-    if (a.lost.empty() || (a.mind.thinking() && a.mind.horizon() > now())) {
+    // When a program ends is not the same in every run. It is missed at the step to which the world can run without its
+    // answer to the next message, which is; until then its acts take effect.
+    const bool missed = a.closed || !a.connected || a.mind.horizon() <= now();
+    if (a.lost.empty() || !missed) {
       ++i;
       continue;
     }

@@ -52,6 +52,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   void startAgent(const std::string& type);
   spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
+  spades::ThinkModel modelOf(const Agent& agent) const;
   void exchange(Agent& agent);
   void deliver(Agent& agent);
   void feed(Agent& agent);

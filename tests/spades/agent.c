@@ -1,7 +1,7 @@
 /* An agent for the middleware SPADES, written from the description of its messages alone: it reads from descriptor 3
  * and writes to descriptor 4, each message behind a length of four bytes, big-endian.
  *
- *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | fork]
+ *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | fork]
  *
  * Like the agents of 2004 it counts sensations: it creates its sphere at the first, joins its team at the second, and
  * plays from the third on: it asks for the think time so far, requests a time notification, drives towards the ball and
@@ -123,5 +123,6 @@ int main(int argc, char** argv) {
       act();
     }
     sendText("D");
+    if (from > 0 && n >= from && strcmp(way, "last") == 0) return 0;
   }
 }

@@ -101,7 +101,7 @@ TEST_CASE("A piece ends with the first frame of the next one, and only the last 
   }
   CHECK(piece.to == m.history.to());
   CHECK((pieces >= 14 && pieces <= 16));
-  // The piece that grows is compressed once for all who ask at the same time.
+  // The piece that grows is compressed once for all viewers that request it at the same time.
   CHECK(m.history.pieceAt(30) == m.history.pieceAt(29.9));
   const auto before = m.history.pieceAt(30);
   m.play(0.1);

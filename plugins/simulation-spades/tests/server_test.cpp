@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <csignal>
@@ -128,6 +129,19 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
     CAPTURE(line);
     CHECK_THAT(f.host.text, Catch::Contains(line));
   }
+}
+
+TEST_CASE("The acts of an agent that ends after its thought take effect, and it is missed at the same step each time") {
+  const auto run = [] {
+    Field f(Field::Types{{"good", "Good"}, {"leaves", "Bad last 2"}});
+    f.run(100);
+    CHECK_THAT(f.host.text, Catch::Contains("agent 1 (leaves) is lost at step 64"));
+    return f.listener->lines;
+  };
+  const std::vector<std::string> lines = run();
+  CHECK(std::count(lines.begin(), lines.end(), "44: 1 (init (unum 0) (teamname Bad))") == 1);
+  CHECK(std::count(lines.begin(), lines.end(), "64: -agent 1 (leaves)") == 1);
+  for (int i = 0; i < 5; ++i) CHECK(run() == lines);
 }
 
 TEST_CASE("What an agent has started ends with it") {

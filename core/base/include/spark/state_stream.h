@@ -37,8 +37,8 @@ class StateWriter {
   void write(const char* v) { write(std::string_view(v)); }
   /// Writes a value with its type.
   void write(const Value& v);
-  /// Writes bytes that are read again but do not count for the hash: what tells of this process, and is needed to go on
-  /// from it, such as who is connected. Nothing happens unless bytes are kept.
+  /// Writes bytes that are read again but do not count for the hash: data of this process
+  /// that a restored run needs, such as its connections. Does nothing unless bytes are kept.
   void aside(std::string_view v);
   /// True if bytes are kept.
   bool keeps() const { return keep_; }
