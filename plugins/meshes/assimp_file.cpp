@@ -3,13 +3,21 @@
 #include <assimp/BaseImporter.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
+#include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
 #include <memory>
+#include <type_traits>
 
+#include "apart.h"
 #include "spark/error.h"
 
 namespace spark::meshes {
@@ -36,6 +44,139 @@ void keepReadersOf(const std::string& format, Assimp::Importer& importer) {
     throw Error(fmt::format("expected a mesh file of a known kind, such as .obj, .stl, .dae, .glb or .msh, found '.{}'",
                             format));
 }
+MeshMaterial materialOf(const aiMaterial& from) {
+  MeshMaterial out{from.GetName().C_Str(), {}, {}};
+  if (out.name == AI_DEFAULT_MATERIAL_NAME) out.name.clear();
+  const auto color = [&](const char* key, Color& to) {
+    aiColor4D c;
+    if (from.Get(key, 0, 0, c) == aiReturn_SUCCESS) to = {c.r, c.g, c.b, 1};
+  };
+  color("$clr.ambient", out.look.ambient);
+  color("$clr.diffuse", out.look.diffuse);
+  color("$clr.specular", out.look.specular);
+  color("$clr.emissive", out.look.emission);
+  float number = 0;
+  if (from.Get(AI_MATKEY_OPACITY, number) == aiReturn_SUCCESS) out.look.diffuse.a = number;
+  if (from.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS)
+    out.look.shininess = std::clamp<double>(number, 0, 128);
+  aiString texture;
+  // The names of textures inside of the file begin with a star.
+  if (from.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS && texture.C_Str()[0] != '*')
+    out.texture = texture.C_Str();
+  return out;
+}
+
+AssimpMesh meshOf(const aiMesh& from) {
+  AssimpMesh out{{}, {}, from.mMaterialIndex};
+  for (unsigned i = 0; i < from.mNumVertices; ++i) {
+    const aiVector3D& p = from.mVertices[i];
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      throw Error("expected vertices of finite numbers");
+    const aiVector3D n = from.HasNormals() ? from.mNormals[i] : aiVector3D();
+    const aiVector3D t = from.HasTextureCoords(0) ? from.mTextureCoords[0][i] : aiVector3D();
+    out.corners.push_back({{p.x, p.y, p.z}, {n.x, n.y, n.z}, {t.x, t.y}});
+  }
+  for (unsigned f = 0; f < from.mNumFaces; ++f)
+    out.triangles.insert(out.triangles.end(), from.mFaces[f].mIndices, from.mFaces[f].mIndices + 3);
+  return out;
+}
+
+AssimpFile readHere(const std::string& format, const std::string& bytes) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new NoFiles);  // which owns it
+  keepReadersOf(format, importer);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
+  const aiScene* const scene = importer.ReadFileFromMemory(
+      bytes.data(), bytes.size(),
+      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
+      format.c_str());
+  if (!scene) throw Error(importer.GetErrorString());
+  AssimpFile out;
+  for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(materialOf(*scene->mMaterials[m]));
+  for (unsigned m = 0; m < scene->mNumMeshes; ++m)
+    if (scene->mMeshes[m]->mPrimitiveTypes == aiPrimitiveType_TRIANGLE)
+      out.meshes.push_back(meshOf(*scene->mMeshes[m]));
+  return out;
+}
+
+/// Writes what another process of this program reads.
+struct Writer {
+  std::string bytes;
+  template <class T>
+  void operator()(const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+  }
+  template <class T>
+  void list(const T& values) {
+    (*this)(values.size());
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof *values.data());
+  }
+};
+
+/// Reads what Writer wrote. Throws Error at the end of the bytes.
+struct Reader {
+  const std::string& bytes;
+  std::size_t at = 0;
+  void take(void* to, std::size_t size) {
+    if (size > bytes.size() - at) throw Error("the reader crashed");
+    if (size > 0) std::memcpy(to, bytes.data() + at, size);
+    at += size;
+  }
+  template <class T>
+  void operator()(T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    take(&value, sizeof value);
+  }
+  template <class T>
+  void list(T& values) {
+    std::size_t size = 0;
+    (*this)(size);
+    if (size > (bytes.size() - at) / sizeof *values.data()) throw Error("the reader crashed");
+    values.resize(size);
+    take(values.data(), size * sizeof *values.data());
+  }
+};
+
+/// Hands each part of a file to a Writer or a Reader. `resize(list)` gives a list the length that it has there.
+template <class Stream, class File, class Resize>
+void pass(Stream& stream, File& file, const Resize& resize) {
+  resize(file.meshes);
+  for (auto& mesh : file.meshes) {
+    stream.list(mesh.corners);
+    stream.list(mesh.triangles);
+    stream(mesh.material);
+  }
+  resize(file.materials);
+  for (auto& material : file.materials) {
+    stream.list(material.name);
+    stream(material.look);
+    stream.list(material.texture);
+  }
+}
+
+std::string written(const AssimpFile& file) {
+  Writer out;
+  pass(out, file, [&out](const auto& list) { out(list.size()); });
+  return std::move(out.bytes);
+}
+
+AssimpFile readBack(const std::string& bytes) {
+  Reader in{bytes};
+  AssimpFile out;
+  pass(in, out, [&in](auto& list) {
+    std::size_t size = 0;
+    in(size);
+    if (size > in.bytes.size()) throw Error("the reader crashed");
+    list.resize(size);
+  });
+  for (const AssimpMesh& mesh : out.meshes) {
+    if (mesh.material >= out.materials.size() || mesh.triangles.size() % 3 != 0) throw Error("the reader crashed");
+    for (const std::uint32_t i : mesh.triangles)
+      if (i >= mesh.corners.size()) throw Error("expected indices of vertices in faces");
+  }
+  return out;
+}
 }  // namespace
 
 std::string formatOf(const std::string& name) {
@@ -45,15 +186,8 @@ std::string formatOf(const std::string& name) {
   return format;
 }
 
-AssimpFile::AssimpFile(const std::string& format, const std::string& bytes) {
-  importer_.SetIOHandler(new NoFiles);  // which owns it
-  keepReadersOf(format, importer_);
-  importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
-  scene_ = importer_.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
-      format.c_str());
-  if (!scene_) throw Error(importer_.GetErrorString());
+AssimpFile readAssimpFile(const std::string& format, const std::string& bytes) {
+  return readBack(doneApart([&] { return written(readHere(format, bytes)); }));
 }
 
 }  // namespace spark::meshes

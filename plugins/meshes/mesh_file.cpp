@@ -1,6 +1,5 @@
 #include "mesh_file.h"
 
-#include <assimp/scene.h>
 #include <tiny_obj_loader.h>
 
 #include <array>
@@ -119,18 +118,11 @@ Mesh readMesh(const std::string& name, const std::string& bytes) {
   if (format == "msh") return readMsh(bytes);
   if (format == "obj") return readObj(bytes);
   Mesh s;
-  const AssimpFile file(format, bytes);
-  for (unsigned m = 0; m < file.scene().mNumMeshes; ++m) {
-    const aiMesh& mesh = *file.scene().mMeshes[m];
-    if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
+  for (const AssimpMesh& mesh : readAssimpFile(format, bytes).meshes) {
     const auto first = static_cast<std::uint32_t>(s.vertices.size() / 3);
-    for (unsigned v = 0; v < mesh.mNumVertices; ++v)
-      for (const float c : {mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z}) {
-        if (!std::isfinite(c)) throw Error("expected vertices of finite numbers");
-        s.vertices.push_back(c);
-      }
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f)
-      for (unsigned i = 0; i < 3; ++i) s.triangles.push_back(first + mesh.mFaces[f].mIndices[i]);
+    for (const AssimpMesh::Corner& corner : mesh.corners)
+      s.vertices.insert(s.vertices.end(), std::begin(corner.position), std::end(corner.position));
+    for (const std::uint32_t i : mesh.triangles) s.triangles.push_back(first + i);
   }
   if (s.triangles.empty()) throw Error("expected triangles, found none");
   return s;

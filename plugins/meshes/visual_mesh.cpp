@@ -1,10 +1,8 @@
 #include "visual_mesh.h"
 
-#include <assimp/scene.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <array>
 #include <map>
 
@@ -37,56 +35,26 @@ void addTriangle(const std::array<Corner, 3>& corners, MeshPart& part) {
   }
 }
 
-Corner cornerOf(const aiMesh& mesh, unsigned vertex) {
-  const auto vector = [](const aiVector3D& v) { return Eigen::Vector3f(v.x, v.y, v.z); };
-  Corner out{vector(mesh.mVertices[vertex])};
-  if (!out.position.allFinite()) throw Error("expected vertices of finite numbers");
-  if (mesh.HasNormals()) out.normal = vector(mesh.mNormals[vertex]);
-  if (mesh.HasTextureCoords(0)) out.place = vector(mesh.mTextureCoords[0][vertex]).head<2>();
-  return out;
-}
-
-MeshMaterial materialOf(const aiMaterial& from, const std::string& name, const std::string& mesh,
-                        const FindFile& find) {
-  MeshMaterial out{name, {}, {}};
-  const auto color = [&](const char* key, Color& to) {
-    aiColor4D c;
-    if (from.Get(key, 0, 0, c) == aiReturn_SUCCESS) to = {c.r, c.g, c.b, 1};
-  };
-  color("$clr.ambient", out.look.ambient);
-  color("$clr.diffuse", out.look.diffuse);
-  color("$clr.specular", out.look.specular);
-  color("$clr.emissive", out.look.emission);
-  float number = 0;
-  if (from.Get(AI_MATKEY_OPACITY, number) == aiReturn_SUCCESS) out.look.diffuse.a = number;
-  if (from.Get(AI_MATKEY_SHININESS, number) == aiReturn_SUCCESS)
-    out.look.shininess = std::clamp<double>(number, 0, 128);
-  aiString texture;
-  // Textures inside of the mesh file, whose names begin with a star, are not shown.
-  if (from.GetTexture(aiTextureType_DIFFUSE, 0, &texture) == aiReturn_SUCCESS && texture.C_Str()[0] != '*')
-    out.texture = resourceOf(texture.C_Str(), "textures", mesh, find);
-  return out;
-}
-
 /// Reads what assimp reads. A material that a format makes up, because it knows none, is none.
 VisualMesh readScene(const std::string& resource, const std::string& bytes, const FindFile& find) {
-  const AssimpFile file(formatOf(resource), bytes);
-  const aiScene& scene = file.scene();
+  const AssimpFile file = readAssimpFile(formatOf(resource), bytes);
   std::map<std::string, MeshPart> parts;  // by material
   VisualMesh out;
-  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
-    const aiMesh& mesh = *scene.mMeshes[m];
-    if (mesh.mPrimitiveTypes != aiPrimitiveType_TRIANGLE) continue;
-    const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
-    std::string name = material.GetName().C_Str();
-    if (name == AI_DEFAULT_MATERIAL_NAME) name.clear();
-    if (!name.empty() && !parts.contains(name)) out.materials.push_back(materialOf(material, name, resource, find));
-    MeshPart& part = parts[name];
-    part.material = name;
-    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
-      const unsigned* const i = mesh.mFaces[f].mIndices;
-      addTriangle({cornerOf(mesh, i[0]), cornerOf(mesh, i[1]), cornerOf(mesh, i[2])}, part);
+  for (const AssimpMesh& mesh : file.meshes) {
+    const MeshMaterial& material = file.materials[mesh.material];
+    if (!material.name.empty() && !parts.contains(material.name)) {
+      out.materials.push_back(material);
+      if (!material.texture.empty())
+        out.materials.back().texture = resourceOf(material.texture, "textures", resource, find);
     }
+    MeshPart& part = parts[material.name];
+    part.material = material.name;
+    const auto corner = [&mesh](std::uint32_t i) {
+      const AssimpMesh::Corner& c = mesh.corners[i];
+      return Corner{Eigen::Vector3f(c.position), Eigen::Vector3f(c.normal), Eigen::Vector2f(c.place)};
+    };
+    for (std::size_t i = 0; i < mesh.triangles.size(); i += 3)
+      addTriangle({corner(mesh.triangles[i]), corner(mesh.triangles[i + 1]), corner(mesh.triangles[i + 2])}, part);
   }
   for (auto& [name, part] : parts)
     if (!part.vertices.empty()) out.parts.push_back(std::move(part));

@@ -28,6 +28,3 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   return 0;
 }
-
-// Assimp forgets memory when it refuses a file.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libassimp"; }

@@ -1,8 +1,10 @@
 #include "../mesh_file.h"
 
 #include <catch2/catch.hpp>
+#include <cstdlib>
 #include <cstring>
 
+#include "../apart.h"
 #include "../hull.h"
 #include "spark/error.h"
 #include "tetrahedron.h"
@@ -68,6 +70,24 @@ TEST_CASE("Numbers that are none are refused in each format") {
   const float nan = std::nanf("");
   std::memcpy(withNan.data() + withNan.size() - 72, &nan, 4);
   CHECK_THROWS_AS(readMesh("a.glb", withNan), Error);
+}
+
+TEST_CASE("A mesh file at which its reader crashes is refused") {
+  std::string file = kDae;
+  file.replace(file.find(" count=\"12\""), 11, "");
+  file.replace(file.find("0 3 2 1"), 7, "0 3 -2 1");
+  CHECK_THROWS_WITH(readMesh("a.dae", file), Catch::Contains("crash"));
+  file = kDae;
+  file.replace(file.find("count=\"12\""), 10, "count=\"4000000000\"");
+  CHECK_THROWS_AS(readMesh("a.dae", file), Error);
+}
+
+TEST_CASE("Work that crashes, or takes too much memory, ends alone") {
+  CHECK(meshes::doneApart([] { return std::string("done"); }) == "done");
+  CHECK(meshes::doneApart([] { return std::string(1'000'000, 'x'); }) == std::string(1'000'000, 'x'));
+  CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string { throw Error("expected a mesh"); }), "expected a mesh");
+  CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string { std::abort(); }), Catch::Contains("the reader crashed"));
+  CHECK_THROWS_AS(meshes::doneApart([] { return std::string(std::size_t{1} << 40, 'x'); }), Error);
 }
 
 TEST_CASE("A mesh file without triangles, or of an unknown kind, is refused with a reason") {
