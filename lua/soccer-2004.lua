@@ -10,11 +10,13 @@ include "soccer-house.lua"
 
 local types   = option{ name = "agents", default = "", doc = "Agent types of the database; \"A B\": eleven of each, with `players`." }
 local players = option{ name = "players", default = 11, doc = "Agents of each type." }
+local create  = option{ name = "createEffector", default = "CreateEffector",
+                        doc = "Class of the effector that gives an agent its sphere: CreateEffector, (create), or SceneEffector, (scene rsg/agent/sphere_2004.rsg)." }
 local offside = option{ name = "offside", default = true, doc = "Offside is judged." }
 
 files() scene() materials() physics(engineOption())
 simulation().step = 0.01
-spades{ types = types, players = players, effector = "CreateEffector" }
+spades{ types = types, players = players, effector = create }
 monitors{ encoder = "SexpMonitor" }
 web() control()
 plugin "sensors" plugin "effectors"
@@ -35,6 +37,8 @@ if offside then new("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect") en
 soccerMonitor()
 get("/sys/server/monitor/GameStateItem").areas = true
 get("/usr/scene"):importScene("rsg/soccer/field_2004.rsg")
+
+if create ~= "CreateEffector" then return end
 
 -- An agent sends (create) and gets its sphere.
 local creator = new("ScriptAspect", "/sys/server/gamecontrol/creator")

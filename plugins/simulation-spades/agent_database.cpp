@@ -80,6 +80,18 @@ std::map<std::string, AgentType> readAgentDatabase(const std::string& file) {
     type.command = words(node.child("exec_line").text().get());
     if (type.command.empty())
       db.fail(node.offset_debug(), fmt::format("agent type '{}' has no exec_line: expected a program", type.name));
+    const std::string protocol = node.child("protocol").text().as_string("spades");
+    type.tcp = protocol == "tcp";
+    if (!type.tcp && protocol != "spades")
+      db.fail(node.child("protocol").offset_debug(),
+              fmt::format("expected the protocol spades or tcp, found '{}'", protocol));
+    if (node.child("ends")) type.ends = node.child("ends").text().get();
+    const auto hasPort = [](const std::string& word) { return word.find("{port}") != word.npos; };
+    if (type.tcp && std::none_of(type.command.begin(), type.command.end(), hasPort))
+      db.fail(node.offset_debug(),
+              fmt::format("agent type '{}' connects over TCP: expected {{port}} in its exec_line, where "
+                          "the program gets the port",
+                          type.name));
     if (!types.emplace(type.name, type).second)
       db.fail(node.offset_debug(), fmt::format("agent type '{}' is there twice", type.name));
   }

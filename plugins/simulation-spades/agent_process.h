@@ -1,43 +1,39 @@
 #pragma once
 /// \file
-/// An agent's program, and the pipes to it.
-
-#include <sys/types.h>
+/// Agents that are programs of this machine, for the middleware SPADES.
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "agent_database.h"
 #include "agent_link.h"
+#include "agent_program.h"
 #include "frame_stream.h"
 
 namespace spark::spades {
 
-/// A running program. Ends it, and what it has started, when it is destroyed: it should have got the message X before.
+/// Starts an agent of a type, which speaks as the type says. `number`: counts the agents of the type, from 1; `log`:
+/// see AgentProgram. Throws Error.
+std::unique_ptr<AgentLink> startAgent(const AgentType& type, int number, const std::string& log);
+
+/// A program with pipes. It should have got the message X before it is destroyed.
 class AgentProcess final : public AgentLink {
  public:
-  /// Starts the program; what it prints goes to `log`-stdout.log and `log`-stderr.log, or nowhere if `log` is empty.
-  /// Throws Error.
+  /// Starts the program. Throws Error.
   AgentProcess(const AgentType& type, const std::string& log);
-  ~AgentProcess() override;
-  AgentProcess(const AgentProcess&) = delete;
-  AgentProcess& operator=(const AgentProcess&) = delete;
 
   void send(std::string_view message) override;
   void poll() override { pipes_->poll(); }
   std::optional<Message> receive() override;
   const std::string& lost() const override { return pipes_->lost(); }
-  bool ended() override;
-  void addDescriptors(std::vector<pollfd>& out) const override;
+  bool ended() override { return program_->ended(); }
+  void addDescriptors(std::vector<pollfd>& out) const override { pipes_->addDescriptors(out); }
 
  private:
-  /// Ends the program and what it has started.
-  void kill();
-  /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
-  double cpuSeconds() const;
-  pid_t pid_ = -1;
-  double cpuAtBegin_ = 0;
+  std::unique_ptr<AgentProgram> program_;
   std::unique_ptr<FrameStream> pipes_;
+  double cpuAtBegin_ = 0;
 };
 
 }  // namespace spark::spades

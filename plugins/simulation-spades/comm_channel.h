@@ -51,7 +51,7 @@ class CommChannel {
 
 /// The first frame of a connection, from the communication server.
 struct CommHello {
-  static constexpr std::string_view kVersion = "spark-comm 1";
+  static constexpr std::string_view kVersion = "spark-comm 2";
   std::string session;  ///< random, the same on each connection
   std::uint64_t received = 0;
   std::string token, name;

@@ -186,9 +186,9 @@ std::vector<CommPort::Server*> CommPort::servers() const {
   return out;
 }
 
-std::unique_ptr<AgentLink> CommPort::start(Server& server, int id, const std::string& type) {
+std::unique_ptr<AgentLink> CommPort::start(Server& server, int id, const std::string& type, int number) {
   auto agent = std::make_unique<RemoteAgent>(server, id);
-  server.channel_.send(fmt::format("start {} {}", id, type));
+  server.channel_.send(fmt::format("start {} {} {}", id, number, type));
   return agent;
 }
 
@@ -206,13 +206,9 @@ void CommPort::end() {
 
 void CommPort::addDescriptors(std::vector<pollfd>& out) const {
   out.push_back({listener_, POLLIN, 0});
-  const auto add = [&out](const FrameStream* s) {
-    if (!s) return;
-    out.push_back({s->input(), POLLIN, 0});
-    if (s->output() >= 0) out.push_back({s->output(), POLLOUT, 0});
-  };
-  for (const auto& stream : newcomers_) add(stream.get());
-  for (const auto& [session, server] : servers_) add(server->channel_.stream());
+  for (const auto& stream : newcomers_) stream->addDescriptors(out);
+  for (const auto& [session, server] : servers_)
+    if (const FrameStream* const s = server->channel_.stream()) s->addDescriptors(out);
 }
 
 }  // namespace spark::spades

@@ -19,8 +19,8 @@ namespace spark::spades {
 
 class RemoteAgent;
 
-/// Listens for communication servers (tools/sparkcomm). Messages to one are `start <id> <type>`, `to <id> <message>`,
-/// `end`; from it `from <id> <CPU time [us]> <message>`, `lost <id> <why>`. Simulation thread.
+/// Listens for communication servers (tools/sparkcomm). Messages to one are `start <id> <number> <type>`, `to <id>
+/// <message>`, `end`; from it `from <id> <CPU time [us]> <message>`, `lost <id> <why>`. Simulation thread.
 class CommPort {
  public:
   /// A communication server that has connected once.
@@ -52,8 +52,8 @@ class CommPort {
   void poll(double patience, bool open);
   /// The servers, in the order of their names.
   std::vector<Server*> servers() const;
-  /// Starts an agent there. The server must outlive it.
-  std::unique_ptr<AgentLink> start(Server& server, int id, const std::string& type);
+  /// Starts an agent there, the `number`th of its type, from 1. The server must outlive it.
+  std::unique_ptr<AgentLink> start(Server& server, int id, const std::string& type, int number);
   /// Tells all servers that the simulation is over; each leaves then.
   void end();
   /// True while one of them has not left. A connection that is closed before could lose what was sent last.

@@ -24,6 +24,12 @@ FrameStream::~FrameStream() {
   if (output_ != input_) ::close(output_);
 }
 
+void FrameStream::addDescriptors(std::vector<pollfd>& out) const {
+  if (!lost_.empty()) return;
+  out.push_back({input_, POLLIN, 0});
+  if (!out_.empty()) out.push_back({output_, POLLOUT, 0});
+}
+
 void FrameStream::send(std::string_view message) {
   if (!lost_.empty()) return;
   if (out_.size() + message.size() > kMost) return fail("it does not read its messages");

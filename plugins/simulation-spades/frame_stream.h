@@ -2,10 +2,13 @@
 /// \file
 /// Messages over pipes or a socket, each behind a length of four bytes, big-endian.
 
+#include <poll.h>
+
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spark::spades {
 
@@ -32,6 +35,8 @@ class FrameStream {
   /// The descriptors to wait for: input always, output while something is unsent, else -1.
   int input() const { return input_; }
   int output() const { return out_.empty() ? -1 : output_; }
+  /// Appends the descriptors to wait for: none if it is lost, since a closed one would be ready all the time.
+  void addDescriptors(std::vector<pollfd>& out) const;
 
  private:
   void fail(std::string why) {

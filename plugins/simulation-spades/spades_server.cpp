@@ -186,12 +186,13 @@ spades::CommPort::Server* SpadesServer::serverFor(const std::string& type) {
 void SpadesServer::startAgent(const std::string& type) {
   std::unique_ptr<spades::AgentLink> link;
   std::string timer;
+  const int number = ++numbers_[type];
   if (spades::CommPort::Server* const server = serverFor(type)) {
-    link = comm_->start(*server, started_, type);
+    link = comm_->start(*server, started_, type, number);
     timer = *server->timerOf(type);
   } else if (const auto known = types_.find(type); known != types_.end()) {
     const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, started_);
-    link = std::make_unique<spades::AgentProcess>(known->second, log);
+    link = spades::startAgent(known->second, number, log);
     timer = known->second.timer;
   } else {
     throw Error("no communication server has this type, nor the database of the host");

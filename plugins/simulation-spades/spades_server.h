@@ -80,6 +80,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   int port_ = -1, commServers_ = 0;
   std::unique_ptr<spades::CommPort> comm_;   ///< nullptr: agents of this machine only
   std::map<std::string, std::size_t> next_;  ///< by type: of the servers that have it, which starts the next agent
+  std::map<std::string, int> numbers_;       ///< of the agents that were started last, by type
   std::map<std::string, spades::AgentType> types_;
   std::vector<std::pair<std::string, int>> queue_;
   std::vector<std::unique_ptr<Agent>> agents_;  ///< in order of id

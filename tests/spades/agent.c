@@ -2,6 +2,11 @@
  * and writes to descriptor 4, each message behind a length of four bytes, big-endian.
  *
  *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | fork]
+ *     agent tcp PORT [twice | flood | mute | leave]
+ *
+ * The second form is an agent of the plain loop: it connects to PORT, sends (scene) and answers the n-th percepts with
+ * (answer n), and (syn) in a message of its own. `twice` answers twice, `flood` sends without being asked, `mute` never
+ * sends anything, and `leave` does not connect.
  *
  * Like the agents of 2004 it counts sensations: it creates its sphere at the first, joins its team at the second, and
  * plays from the third on: it asks for the think time so far, requests a time notification, drives towards the ball and
@@ -13,11 +18,15 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <arpa/inet.h>
+#include <sys/socket.h>
+
+static int in = 3, out = 4;
 static char message[65536];
 
 static void readAll(char* to, size_t n) {
   while (n > 0) {
-    ssize_t got = read(3, to, n);
+    ssize_t got = read(in, to, n);
     if (got <= 0) exit(1);
     to += got;
     n -= (size_t)got;
@@ -37,7 +46,7 @@ static void sendText(const char* text) {
   size_t n = strlen(text);
   char bytes[1024] = {(char)(n >> 24), (char)(n >> 16), (char)(n >> 8), (char)n};
   memcpy(bytes + 4, text, n);
-  if (write(4, bytes, n + 4) != (ssize_t)(n + 4)) exit(1);
+  if (write(out, bytes, n + 4) != (ssize_t)(n + 4)) exit(1);
 }
 
 static void burn(double ms) {
@@ -63,7 +72,29 @@ static void act(void) {
   sendText(text);
 }
 
+static int playOverTcp(int port, const char* way) {
+  struct sockaddr_in to = {.sin_family = AF_INET, .sin_port = htons((unsigned short)port)};
+  if (strcmp(way, "leave") == 0) return 0;
+  in = out = socket(AF_INET, SOCK_STREAM, 0);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  if (connect(in, (struct sockaddr*)&to, sizeof to) != 0) return 1;
+  if (strcmp(way, "mute") == 0)
+    for (;;) pause();
+  sendText("(scene)");
+  while (strcmp(way, "flood") == 0) sendText("(more)");
+  for (int n = 1;; ++n) {
+    receive();
+    for (int i = strcmp(way, "twice") == 0 ? 2 : 1; i > 0; --i) {
+      char text[64];
+      snprintf(text, sizeof text, "(answer %d)", n);
+      sendText(text);
+      sendText("(syn )");
+    }
+  }
+}
+
 int main(int argc, char** argv) {
+  if (argc > 2 && strcmp(argv[1], "tcp") == 0) return playOverTcp(atoi(argv[2]), argc > 3 ? argv[3] : "");
   const char* team = argc > 1 ? argv[1] : "Spheres";
   const char* way = argc > 2 ? argv[2] : "";
   const int from = argc > 3 ? atoi(argv[3]) : 0;

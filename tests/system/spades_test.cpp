@@ -18,14 +18,18 @@ struct OldMatch {
   std::vector<std::string> arguments;
   std::string red = "Red", blue = "Blue", timer = "fixed 3", level = "warning";
   int players = 4, seconds = 20;
+  bool tcp = false;  ///< teams of spheres that are made for the plain loop
 
   /// The agent database as a file.
   std::string database() const {
     std::string xml = "<agentdb>";
     for (const auto& [type, line] : {std::pair{"red", red}, std::pair{"blue", blue}})
       xml += "<agent_type_external name='" + std::string(type) + "'><timer>" + timer + "</timer><working_dir>" +
-             binFolder().string() + "</working_dir><exec_line>spades-agent " + line +
-             "</exec_line></agent_type_external>";
+             binFolder().string() + "</working_dir>" +
+             (tcp ? "<protocol>tcp</protocol><exec_line>sphere-team --port {port} --number {number} --robot "
+                    "rsg/agent/sphere_2004.rsg --team "
+                  : "<exec_line>spades-agent ") +
+             line + "</exec_line></agent_type_external>";
     return folder.write("agentdb.xml", xml + "</agentdb>");
   }
   std::vector<std::string> command() const {
@@ -107,6 +111,27 @@ TEST_CASE("Agents of two communication servers play the same match as those of t
   REQUIRE(two.wait() == 0);
   REQUIRE(result["agentsSeen"] == 8);
   REQUIRE(result["stateHash"] == reference);
+}
+
+TEST_CASE("Teams made for plain TCP play under SPADES, in the host and under a communication server") {
+  OldMatch m;
+  m.tcp = true;
+  m.arguments = {"--set", "createEffector=SceneEffector", "--set", "Soccer.LongNames=false"};
+  const Finished f = m.play();
+  REQUIRE(f.code == 0);
+  CHECK_THAT(f.errors, !Contains("is lost"));
+  const Json reference = Json::parse(f.out.substr(f.out.find('\n') + 1));
+  REQUIRE(reference["agentsSeen"] == 8);
+  REQUIRE(reference["playMode"] == "PlayOn");
+  REQUIRE(m.result()["stateHash"] == reference["stateHash"]);
+  for (const char* option : {"commPort=0", "commServers=1"}) m.arguments.insert(m.arguments.end(), {"--set", option});
+  Process host(m.command());
+  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
+  Process server({program("sparkcomm"), "--port", port, "--database", m.database()});
+  const Json result = Json::parse(host.line());
+  REQUIRE(host.wait() == 0);
+  REQUIRE(server.wait() == 0);
+  REQUIRE(result["stateHash"] == reference["stateHash"]);
 }
 
 TEST_CASE("A communication server that is killed takes its agents with it, and the match goes on") {

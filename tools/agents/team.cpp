@@ -66,9 +66,12 @@ TeamProgram::TeamProgram(std::string name, const std::string& description, int m
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Framing>{{"length", Framing::length}, {"line", Framing::line}}));
   app_->add_option("--team", options_.team, "Name of the team")->capture_default_str();
-  app_->add_option("--players", options_.players, "Players; number 1 keeps the goal")
+  auto* const players = app_->add_option("--players", options_.players, "Players; number 1 keeps the goal")
+                            ->check(CLI::Range(1, most))
+                            ->capture_default_str();
+  app_->add_option("--number", options_.number, "Play with the player of this number alone")
       ->check(CLI::Range(1, most))
-      ->capture_default_str();
+      ->excludes(players);
   app_->add_option("--parser", options_.parser,
                    "Class of the server's parser: SexpParser, JsonParser, or one of a plugin")
       ->capture_default_str();
@@ -109,9 +112,10 @@ int TeamProgram::run(int argc, char** argv, const std::function<std::unique_ptr<
 bool TeamProgram::play(const std::function<std::unique_ptr<Player>(int unum)>& make) {
   const auto language = makeLanguage(options_.parser, pluginFolders());
   std::vector<std::unique_ptr<Participant>> team;
-  for (int i = 1; i <= options_.players; ++i)
-    team.push_back(std::make_unique<Participant>(*io_, *language, make(options_.reverse ? options_.players + 1 - i : i),
-                                                 options_));
+  const int first = std::max(options_.number, 1), last = options_.number > 0 ? options_.number : options_.players;
+  for (int i = first; i <= last; ++i)
+    team.push_back(
+        std::make_unique<Participant>(*io_, *language, make(options_.reverse ? last + first - i : i), options_));
   for (const auto& p : team) p->start();
   io_->run();
   bool all = true;

@@ -44,7 +44,7 @@ class TeamProgram {
   struct Options {
     std::string host = "127.0.0.1", socket, team = "Spark", parser = "SexpParser";
     Framing framing = Framing::length;
-    int port = 3100, players = 11;
+    int port = 3100, players = 11, number = 0;  ///< number 0: all players, else this one alone
     double patience = 10;
     bool reverse = false, quiet = false;
   };

@@ -114,7 +114,7 @@ void CommServer::obey() {
     }
     const auto [id, text] = splitWord(rest);
     if (word == "start") {
-      startAgent(numberOf(id), std::string(text));
+      start(numberOf(id), text);
     } else if (word == "to") {
       const auto agent = agents_.find(numberOf(id));
       if (agent != agents_.end()) agent->second->send(text);
@@ -122,12 +122,15 @@ void CommServer::obey() {
   }
 }
 
-void CommServer::startAgent(std::uint64_t id, const std::string& type) {
+/// Starts an agent; `what`: the number of it among those of its type, and the type.
+void CommServer::start(std::uint64_t id, std::string_view what) {
   try {
+    const auto [number, name] = splitWord(what);
+    const std::string type(name);
     const auto known = types_.find(type);
     if (known == types_.end()) throw Error(fmt::format("there is no agent type '{}'", type));
     const std::string log = options_.logs.empty() ? std::string() : fmt::format("{}/agent{}", options_.logs, id);
-    agents_[id] = std::make_unique<AgentProcess>(known->second, log);
+    agents_[id] = startAgent(known->second, static_cast<int>(numberOf(number)), log);
   } catch (const std::exception& e) {
     channel_.send(fmt::format("lost {} {}", id, e.what()));
   }
@@ -136,7 +139,7 @@ void CommServer::startAgent(std::uint64_t id, const std::string& type) {
 /// Tells the simulator what agents say, with the CPU time that they used in their cycle.
 void CommServer::report() {
   for (auto a = agents_.begin(); a != agents_.end();) {
-    AgentProcess& agent = *a->second;
+    AgentLink& agent = *a->second;
     agent.poll();
     while (const auto message = agent.receive())
       channel_.send(fmt::format("from {} {} {}", a->first, std::llround(std::max(0.0, message->cpuSeconds) * 1e6),
@@ -154,8 +157,7 @@ void CommServer::wait() const {
   std::vector<pollfd> waiting;
   for (const auto& [id, agent] : agents_) agent->addDescriptors(waiting);
   if (const FrameStream* const s = channel_.stream()) {
-    waiting.push_back({s->input(), POLLIN, 0});
-    if (s->output() >= 0) waiting.push_back({s->output(), POLLOUT, 0});
+    s->addDescriptors(waiting);
   }
   ::poll(waiting.data(), waiting.size(), kMostWait);
 }

@@ -36,14 +36,14 @@ class CommServer {
   void obey();
   void report();
   void wait() const;
-  void startAgent(std::uint64_t id, const std::string& type);
+  void start(std::uint64_t id, std::string_view what);
   void endAgents();
 
   const Options options_;
   std::map<std::string, AgentType> types_;
   CommHello hello_;
   CommChannel channel_;
-  std::map<std::uint64_t, std::unique_ptr<AgentProcess>> agents_;  ///< by id
+  std::map<std::uint64_t, std::unique_ptr<AgentLink>> agents_;  ///< by id
   bool over_ = false;
   std::string refused_;
   volatile int stopped_ = 0;

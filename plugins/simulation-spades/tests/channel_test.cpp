@@ -86,6 +86,6 @@ TEST_CASE("a hello is read as it was written, and another program is refused wit
   REQUIRE(read.write() == hello.write());
   REQUIRE(read.types == hello.types);
   REQUIRE_THROWS_WITH(CommHello::read("GET / HTTP/1.1"), Catch::Contains("expected a communication server of version"));
-  REQUIRE_THROWS_WITH(CommHello::read("spark-comm 1\nshort\n0\n\n"), Catch::Contains("session"));
-  REQUIRE_THROWS_WITH(CommHello::read("spark-comm 1\n" + std::string(32, 'a') + "\nmany\n"), Catch::Contains("number"));
+  REQUIRE_THROWS_WITH(CommHello::read("spark-comm 2\nshort\n0\n\n"), Catch::Contains("session"));
+  REQUIRE_THROWS_WITH(CommHello::read("spark-comm 2\n" + std::string(32, 'a') + "\nmany\n"), Catch::Contains("number"));
 }

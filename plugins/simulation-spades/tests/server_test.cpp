@@ -58,7 +58,8 @@ struct Field {
 
   /// `types`: name and arguments of the test agent, for each a type.
   using Types = std::vector<std::pair<std::string, std::string>>;
-  explicit Field(const Types& types, const std::string& timer = "fixed 3") {
+  explicit Field(const Types& types, const std::string& timer = "fixed 3", const std::string& further = "") {
+    std::signal(SIGPIPE, SIG_IGN);  // as programs that run simulations do
     kernel.registerClass<Listener>();
     for (const char* plugin : {"simulation", "simulation-spades"}) kernel.plugins().use(plugin);
     kernel.create("Simulation", "/sys/server/simulation");
@@ -69,8 +70,8 @@ struct Field {
     for (const auto& [name, arguments] : types)
       xml += fmt::format(
           "<agent_type_external name=\"{}\"><timer>{}</timer><working_dir>{}</working_dir>"
-          "<exec_line>spades-agent {}</exec_line></agent_type_external>\n",
-          name, timer, binFolder().string(), arguments);
+          "<exec_line>spades-agent {}</exec_line>{}</agent_type_external>\n",
+          name, timer, binFolder().string(), arguments, further);
     kernel.create("SpadesServer", "/sys/server/spades");
     set("/sys/server/spades", "consumer", "/usr/listener");
     set("/sys/server/spades", "database", folder.write("agentdb.xml", xml + "</agentdb>\n"));
@@ -167,6 +168,42 @@ TEST_CASE("What an agent has started ends with it") {
   REQUIRE_FALSE(lives());
 }
 
+TEST_CASE("A program made for plain TCP plays: its messages are acts, and (syn) ends its thought") {
+  Field f(Field::Types{{"plain", "tcp {port}"}, {"twice", "tcp {port} twice"}}, "fixed 3", "<protocol>tcp</protocol>");
+  f.run(120);
+  // It is told of its second sensation first: the first is answered by what it sends after it has connected.
+  const auto of = [&f](const char* agent) {
+    std::vector<std::string> out;
+    for (const std::string& line : f.listener->lines)
+      if (line.find(agent) != line.npos && line.find('+') == line.npos) out.push_back(line);
+    return out;
+  };
+  REQUIRE(of(": 0 ") == std::vector<std::string>{"24: 0 (scene)", "44: 0 (answer 1)", "44: 0 (syn )",
+                                                 "64: 0 (answer 2)", "64: 0 (syn )", "84: 0 (answer 3)", "84: 0 (syn )",
+                                                 "104: 0 (answer 4)", "104: 0 (syn )"});
+  // What comes unasked waits: the answers are one sensation late from then on.
+  REQUIRE(of(": 1 ") == std::vector<std::string>{"24: 1 (scene)", "44: 1 (answer 1)", "44: 1 (syn )",
+                                                 "64: 1 (answer 1)", "64: 1 (syn )", "84: 1 (answer 2)", "84: 1 (syn )",
+                                                 "104: 1 (answer 2)", "104: 1 (syn )"});
+}
+
+TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
+  Field f(Field::Types{{"plain", "tcp {port}"},
+                       {"floods", "tcp {port} flood"},
+                       {"mute", "tcp {port} mute"},
+                       {"leaves", "tcp {port} leave"}},
+          "fixed 3", "<protocol>tcp</protocol>");
+  f.set("/sys/server/spades", "mostThought", 5.0);
+  f.run(60);
+  CHECK(f.linesWith("0 (answer").size() == 1);
+  REQUIRE(f.listener->agents.size() == 1);
+  CHECK_THAT(f.host.text,
+             Catch::Contains("agent 1 (floods) is lost") && Catch::Contains("bytes that no percept asked for"));
+  CHECK_THAT(f.host.text, Catch::Contains("agent 2 (mute) is lost at step 0: it says nothing for more than 5 s"));
+  CHECK_THAT(f.host.text,
+             Catch::Contains("agent 3 (leaves) is lost at step 0: its program has ended without connecting"));
+}
+
 TEST_CASE("Who thinks longer acts later, and all think at the same time") {
   Field f(Field::Types{{"quick", "A burn 1"}, {"slow", "B burn 25"}}, "jiffies 10000");
   f.run(30);
@@ -192,6 +229,12 @@ TEST_CASE("A database that cannot be read says where and what") {
              Catch::Contains("expected a descriptor from 3 to 255 in inputfd, found '1'"));
   CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"><inputfd>4</inputfd></agent_type_external></agentdb>"),
              Catch::Contains("expected two descriptors"));
+  CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"><protocol>udp</protocol><exec_line>y</exec_line>"
+                   "</agent_type_external></agentdb>"),
+             Catch::Contains("expected the protocol spades or tcp, found 'udp'"));
+  CHECK_THAT(fails("<agentdb><agent_type_external name=\"x\"><protocol>tcp</protocol><exec_line>y</exec_line>"
+                   "</agent_type_external></agentdb>"),
+             Catch::Contains("expected {port} in its exec_line"));
   REQUIRE_THROWS_WITH(f.queue("ghosts", 1), Catch::Contains("expected an agent type of the database"));
 }
 
