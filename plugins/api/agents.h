@@ -139,6 +139,15 @@ class IAgentTurns {
   virtual bool senses(const AgentAspect& agent, std::int64_t cycle) const = 0;
 };
 
+/// A port whose agents come back in a run that goes on from a saved state: it starts them itself.
+class IReturningAgents {
+ public:
+  SPARK_INTERFACE(IReturningAgents, 1);
+  virtual ~IReturningAgents() = default;
+  /// True if the connection `id` is that of the agent that had this id when the state was saved.
+  virtual bool returns(std::uint64_t id) const = 0;
+};
+
 /// Logs the mistakes of agents. Offered by game control.
 class IRemarks {
  public:

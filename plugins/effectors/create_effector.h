@@ -15,10 +15,15 @@ class CreateEffector : public Effector {
   }
   std::string predicate() const override { return "create"; }
   std::string act(const Element& action) override {
+    if (created_) return "expected one robot, found a request for another: it has a robot already";
     if (scene_.empty()) return "expected a file in its property scene, found none: nothing is created";
     pending_ = true;
     return expectNoArguments(action);
   }
+
+ protected:
+  void saveState(StateWriter& out) const override { out.write(created_); }
+  void loadState(StateReader& in) override { created_ = in.readBool(); }
 
  private:
   void prepare(const Event&) {
@@ -28,12 +33,13 @@ class CreateEffector : public Effector {
     if (!owner) return;
     try {
       owner->importScene(scene_, {});
+      created_ = true;
     } catch (const std::exception& e) {
       refuse(0, [&] { return fmt::format("nothing is created: {}", e.what()); });
     }
   }
   std::string scene_;
-  bool pending_ = false;
+  bool pending_ = false, created_ = false;
 };
 
 }  // namespace spark

@@ -530,8 +530,7 @@ void GameControl::loadState(StateReader& in) {
     }
   if (tape_ && tape_->playing())
     for (const auto& p : participants_)
-      if (auto* const port =
-              p->vacant() && !p->seat().port.empty() ? kernel().root().find<Node>(p->seat().port) : nullptr)
+      if (auto* const port = p->vacant() && p->wasConnected() ? kernel().root().find<Node>(p->seat().port) : nullptr)
         if (IConnection* const client = tape_->connection(*port, p->seat().key)) seat(*client);
   restored_ = true;
   // The clock waits for agents that are to come back.
@@ -563,9 +562,15 @@ bool GameControl::seat(IConnection& connection) {
 }
 
 /// A client that names a player whose robot stands there without a client goes on as this player; where players have no
-/// names, the first one. False: it does not.
+/// names, the first one; an agent that its port has started again goes on as itself. False: it does not.
 bool GameControl::resume(Participant& client) {
   if (!client.connection()) return false;
+  const Participant::Seat seat{client.connection()->port().path(), client.connection()->id()};
+  const auto seated = [&]() -> Participant* {
+    for (const auto& p : participants_)
+      if (!p->leaving() && p->seat() == seat && p->returns()) return p.get();
+    return nullptr;
+  };
   const auto first = [&]() -> Participant* {
     for (const auto& p : participants_)
       if (p->vacant() && !p->leaving()) return p.get();
@@ -583,7 +588,8 @@ bool GameControl::resume(Participant& client) {
     }
     return nullptr;
   };
-  Participant* player = joinPolicy_ ? named(client.pending()) : first();
+  Participant* player = seated();
+  if (!player) player = joinPolicy_ ? named(client.pending()) : first();
   if (!player && joinPolicy_) player = named(client.deferred());  // it was held back
   if (!player) return false;
   player->takeOver(client, now());

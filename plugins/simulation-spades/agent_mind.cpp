@@ -72,11 +72,22 @@ AgentMind::Result AgentMind::take(std::string_view message) {
 
 void AgentMind::end(Time thought, std::vector<Act>& acts) {
   thinking_ = false;
+  if (std::exchange(stale_, false)) {
+    acts_.clear();
+    requests_.clear();
+    return;
+  }
   ended_ = began_ + std::max(thought, least_);
   for (std::string& data : acts_) acts.push_back({ended_ + latencies_.act, std::move(data)});
   acts_.clear();
   for (const Time t : requests_) pending_.push_back({t, -1, {}});
   requests_.clear();
+}
+
+void AgentMind::forget() {
+  pending_.clear();
+  ended_ = 0;
+  stale_ = thinking_;
 }
 
 }  // namespace spark::spades

@@ -68,12 +68,15 @@ class AgentMind {
   /// Ends the cycle after `thought` steps; appends its acts.
   void end(Time thought, std::vector<Act>& acts);
 
+  /// Forgets what is on its way to the agent, and of what it thinks now nothing will come: time goes on elsewhere.
+  void forget();
+
   bool ready() const { return ready_; }
   bool thinking() const { return thinking_; }
   /// When the cycle began. Only while thinking().
   Time began() const { return began_; }
   /// Until it answers, the world must not execute the step that begins at this time; kNever: no limit.
-  Time horizon() const { return thinking_ ? began_ + least_ + latencies_.act : kNever; }
+  Time horizon() const { return !thinking_ ? kNever : stale_ ? 0 : began_ + least_ + latencies_.act; }
   /// Sensations that were dropped because the agent thought for too long.
   std::int64_t dropped() const { return dropped_; }
 
@@ -90,6 +93,7 @@ class AgentMind {
   std::vector<std::string> acts_;
   std::vector<Time> requests_;
   bool ready_ = false, thinking_ = false;
+  bool stale_ = false;  ///< forget() was called since it began to think
   Time began_ = 0, ended_ = 0, least_ = 0;
   std::int64_t dropped_ = 0;
 };

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
@@ -30,12 +31,14 @@ class Closing {
   int descriptor_;
 };
 
-/// A pipe whose ends are closed in programs that are started.
-struct Pipe {
-  explicit Pipe(const std::array<int, 2>& ends = make()) : reads(ends[0]), writes(ends[1]) {}
+/// A way for bytes in one direction, whose ends are closed in programs that are started. A socket, unlike a pipe, can
+/// be written without a signal when nobody reads it any more.
+struct Way {
+  explicit Way(const std::array<int, 2>& ends = make()) : reads(ends[0]), writes(ends[1]) {}
   static std::array<int, 2> make() {
     std::array<int, 2> ends;
-    if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw Error(fmt::format("cannot make a pipe: {}", std::strerror(errno)));
+    if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
+      throw Error(fmt::format("cannot make a socket: {}", std::strerror(errno)));
     return ends;
   }
   Closing reads, writes;
@@ -55,7 +58,7 @@ std::unique_ptr<AgentLink> startAgent(const AgentType& type, int number, const s
 }
 
 AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
-  Pipe to, from;
+  Way to, from;
   const Closing reads(copyAbove(to.reads)), writes(copyAbove(from.writes));
   program_ = std::make_unique<AgentProgram>(
       type, type.command, log, std::vector<AgentProgram::Descriptor>{{reads.get(), type.in}, {writes.get(), type.out}});

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <array>
@@ -40,8 +41,7 @@ void FrameStream::send(std::string_view message) {
 
 void FrameStream::flush() {
   while (!out_.empty()) {
-    // Programs that use this ignore SIGPIPE.
-    const ssize_t n = ::write(output_, out_.data(), out_.size());
+    const ssize_t n = ::send(output_, out_.data(), out_.size(), MSG_NOSIGNAL);
     if (n > 0) {
       out_.erase(0, static_cast<std::size_t>(n));
     } else if (errno == EAGAIN) {

@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// Messages over pipes or a socket, each behind a length of four bytes, big-endian.
+/// Messages over sockets, each behind a length of four bytes, big-endian.
 
 #include <poll.h>
 
@@ -12,7 +12,7 @@
 
 namespace spark::spades {
 
-/// Two descriptors that do not block, or one for both directions. Owns them. One thread.
+/// Two sockets that do not block, or one for both directions. Owns them. One thread.
 class FrameStream {
  public:
   /// Most bytes that wait for the other side to read, and longest message from it.

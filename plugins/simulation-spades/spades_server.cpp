@@ -55,6 +55,12 @@ class SpadesServer::Agent final : public IConnection {
     link->send("X");
   }
 
+  /// Another state is loaded: nothing is on its way.
+  void forget() {
+    mind.forget();
+    acts.clear();
+  }
+
   AgentMind mind;
   std::unique_ptr<spades::AgentLink> link;
   std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
@@ -77,6 +83,7 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
   d.doc("Starts agents and exchanges messages with them in simulated time: latencies, think times, causality.");
   d.implements<IInputSource>();
   d.implements<IInputGate>();
+  d.implements<IReturningAgents>();
   d.link(&S::thinkTime_, Child<ThinkTime>());
   d.link(&S::simulation_, At<ISimulation>());
   d.link(&S::tape_, At<IInputTape>());
@@ -135,11 +142,13 @@ void SpadesServer::setConsumer(std::string path) {
 }
 
 void SpadesServer::setDatabase(std::string file) {
-  types_ = file.empty() ? std::map<std::string, spades::AgentType>() : spades::readAgentDatabase(file);
+  // Where a recording is played, no agents are started.
+  types_ = file.empty() || playing() ? std::map<std::string, spades::AgentType>() : spades::readAgentDatabase(file);
   database_ = std::move(file);
 }
 
 void SpadesServer::queueAgents(const std::string& type, int count) {
+  if (playing()) return;
   if (stage_ != Stage::queued) throw Error(fmt::format("{}: its agents are started already", path()));
   if (!types_.contains(type) && port_ < 0) {
     std::string names;
@@ -229,6 +238,11 @@ void SpadesServer::onUnlink() {
   }
   agents_.clear();
   comm_.reset();
+}
+
+void SpadesServer::loadState(StateReader&) {
+  returns_ = true;
+  for (const auto& a : agents_) a->forget();
 }
 
 /// Writes an input to the tape.

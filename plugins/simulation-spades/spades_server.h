@@ -10,6 +10,7 @@
 
 #include "agent_database.h"
 #include "agent_mind.h"
+#include "api/agents.h"
 #include "api/inputs.h"
 #include "api/net.h"
 #include "api/phases.h"
@@ -22,7 +23,7 @@ namespace spark {
 /// At /sys/server/spades; a child is a ThinkTime. Starts the queued agents, passes percepts of its consumer to them as
 /// sensations and their acts to the consumer, each at its simulated time, and keeps the world from running ahead of
 /// acts that may still come. Simulation thread.
-class SpadesServer : public Node, public IInputSource, public IInputGate {
+class SpadesServer : public Node, public IInputSource, public IInputGate, public IReturningAgents {
   SPARK_CLASS(SpadesServer, Node)
  public:
   static constexpr const char* kPath = "/sys/server/spades";
@@ -37,9 +38,13 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   void poll() override;
   bool wait(double seconds) override;
   bool ready(bool lockstep) override;
+  bool returns(std::uint64_t) const override { return returns_; }
 
  protected:
   void onUnlink() override;
+  /// It has no state: what is on its way between agents and the world is lost, as messages in a network are, and a run
+  /// that goes on from a state starts the agents' programs anew.
+  void loadState(StateReader& in) override;
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -86,7 +91,8 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   std::vector<std::unique_ptr<Agent>> agents_;  ///< in order of id
   std::vector<spades::Act> acts_;               ///< used by exchange()
   Stage stage_ = Stage::queued;
-  bool heard_ = false;  ///< something happened in this poll()
+  bool heard_ = false;    ///< something happened in this poll()
+  bool returns_ = false;  ///< a state was loaded, whose agents are those of the same ids
   int started_ = 0, lost_ = 0;
 
   Link<ThinkTime> thinkTime_;

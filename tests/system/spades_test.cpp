@@ -68,6 +68,38 @@ TEST_CASE("A match of the league of 2004 with agents of its time is repeatable, 
   REQUIRE(m.result()["stateHash"] != first["stateHash"]);
 }
 
+TEST_CASE("A match of 2004 goes on from its middle: agents are started again and come back to their robots") {
+  OldMatch m;
+  const std::string file = m.folder.file("match.mcap"), again = m.folder.file("again.mcap");
+  m.arguments = {"--record", file};
+  m.result();
+  const auto verify = [](const std::string& recording, const char* from) {
+    const Finished f =
+        runToEnd({program("sparkreplay"), recording, "--verify", "--from", from, "--log-level", "error"});
+    CAPTURE(f.errors);
+    REQUIRE(f.code == 0);
+    REQUIRE(Json::parse(f.out)["differs"].is_null());
+  };
+  std::remove(m.folder.file("agentdb.xml").c_str());  // a recording is simulated again without programs
+  verify(file, "10");
+  m.database();
+  const auto goOn = [&] {
+    std::remove(again.c_str());
+    return runToEnd({program("sparkhost"), "--from", file, "--at", "10", "--duration", "20", "--record", again,
+                     "--log-level", "info"});
+  };
+  const Finished f = goOn();
+  CAPTURE(f.errors);
+  REQUIRE(f.code == 0);
+  CHECK_THAT(f.errors, Contains("agent 8 (agent 7 (blue)) is back") && !Contains("joins") && !Contains("is lost"));
+  const Json result = Json::parse(f.out.substr(f.out.find('\n') + 1));
+  CHECK(result["agentsSeen"] == 8);
+  CHECK(result["simSeconds"] == Approx(20));
+  verify(again, "0");
+  const Finished twin = goOn();
+  CHECK(Json::parse(twin.out.substr(twin.out.find('\n') + 1))["stateHash"] == result["stateHash"]);
+}
+
 TEST_CASE("An agent that hangs in a match of 2004 is lost alone, at the same step each time") {
   OldMatch m;
   m.seconds = 4;

@@ -81,6 +81,10 @@ void Host::build() {
   defineHostTable();
   if (options_.check) scripts(kernel_).warnOfUnsaved();
   for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
+  if (options_.replay) {  // what the config makes shall know it
+    kernel_.plugins().use("recorder");
+    kernel_.create<Leaf>("InputPlayer", kTape);
+  }
   scripts(kernel_).runConfig(options_.config);
   applySwitches(0);
   if (!kernel_.root().find("/plugins/recorder")) return;
@@ -123,8 +127,7 @@ void Host::record(const std::string& file) {
 }
 
 Leaf& Host::play(const std::string& file) {
-  kernel_.plugins().use("recorder");
-  Leaf& tape = kernel_.create<Leaf>("InputPlayer", kTape);
+  Leaf& tape = kernel_.root().require<Leaf>(kTape);
   callMethod(tape, "open", std::vector<Value>{file});
   return tape;
 }

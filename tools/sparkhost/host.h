@@ -27,7 +27,7 @@ class Host {
   void goOn();
   /// Records to the file, from now on.
   void record(const std::string& file);
-  /// Plays a recording from now on, instead of opening ports; the node that plays it.
+  /// Plays a recording from now on, instead of opening ports; the node that plays it. Precondition: options.replay.
   spark::Leaf& play(const std::string& file);
   /// Opens the ports and returns the first line of stdout.
   std::string open();

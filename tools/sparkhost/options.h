@@ -43,6 +43,7 @@ struct Options {
   double at = HUGE_VAL;                             ///< --at: not from a later state than at this simulated time [s]
   std::vector<std::string> arguments;  ///< the command line that builds the same, for recordings and snapshots
   std::string share;                   ///< folder with lua/ and scenes/ instead of the program's; "": the program's
+  bool replay = false;                 ///< a recording is played: Host::play()
   bool alone = false;  ///< without servers for other programs, such as the control socket; for worlds of a batch
 };
 

@@ -36,6 +36,8 @@ RecordedRun::RecordedRun(const std::string& file)
 namespace {
 /// Options of configs that name files which a run writes.
 bool isWritten(const std::string& key) { return key == "monitorLog" || key == "logFile"; }
+/// Options of configs that name files which are read, and are no part of a recording: programs are listed there.
+bool isRead(const std::string& key) { return key == "agentDatabase"; }
 }  // namespace
 
 Options RecordedRun::options(const Options& own) const {
@@ -54,6 +56,8 @@ Options RecordedRun::options(const Options& own) const {
   // The files of the first run stay as they are.
   for (auto& [key, value] : out.overrides)
     if (isWritten(key) && value.isString() && !value.toString().empty()) value = (files_.share() / key).string();
+  for (auto& [key, value] : out.overrides)
+    if (isRead(key) && value.isString() && !value.toString().empty()) value = (folder_ / value.toString()).string();
   out.switches.insert(out.switches.end(), own.switches.begin(), own.switches.end());
   out.overrides.insert(out.overrides.end(), own.overrides.begin(), own.overrides.end());
   for (std::size_t i = out.fromOverrides; i < out.overrides.size(); ++i)
@@ -63,7 +67,7 @@ Options RecordedRun::options(const Options& own) const {
   out.pluginPaths.insert(out.pluginPaths.end(), own.pluginPaths.begin(), own.pluginPaths.end());
   out.scenePaths.insert(out.scenePaths.end(), own.scenePaths.begin(), own.scenePaths.end());
   out.logLevel = own.logLevel;
-  out.check = own.check, out.histogram = own.histogram, out.alone = own.alone;
+  out.check = own.check, out.histogram = own.histogram, out.alone = own.alone, out.replay = own.replay;
   out.hashes = own.hashes, out.hashEvery = own.hashEvery, out.record = own.record;
   out.from = own.from, out.at = own.at, out.branch = own.seed;
   return out;

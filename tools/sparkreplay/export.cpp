@@ -159,6 +159,7 @@ std::int64_t simulate(const Export& what, Prepare prepare, Done done) {
   sparkhost::RecordedRun recorded(what.file);
   sparkhost::Options own;
   own.logLevel = what.logLevel;
+  own.replay = true;
   const sparkhost::Options options = recorded.options(own);
   sparkhost::Host host(options);
   sparkhost::HangWatch::install(host.kernel());

@@ -98,6 +98,7 @@ std::pair<Json, bool> verify(const std::string& file, double from, const std::st
   sparkhost::RecordedRun recorded(file);
   sparkhost::Options own;
   own.logLevel = logLevel;
+  own.replay = true;
   const sparkhost::Options options = recorded.options(own);
   sparkhost::Host host(options);
   sparkhost::HangWatch::install(host.kernel());  // the command line may set its properties

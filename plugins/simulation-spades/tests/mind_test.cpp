@@ -27,6 +27,22 @@ struct Talk {
 
 }  // namespace
 
+TEST_CASE("Where time goes on elsewhere, nothing is on its way, and what an agent thinks meanwhile comes to nothing") {
+  Talk agent;
+  agent.mind.sense(0, "(first)");
+  agent.mind.sense(20, "(second)");
+  REQUIRE(agent.at(10) == "S0 10 (first)");
+  agent.mind.forget();
+  REQUIRE(agent.mind.horizon() == 0);  // the world waits until it has answered
+  agent.mind.take("A(late)");
+  agent.done();
+  REQUIRE(agent.acts.empty());
+  REQUIRE(agent.mind.horizon() == kNever);
+  agent.mind.sense(0, "(third)");
+  REQUIRE(agent.at(9) == std::nullopt);
+  REQUIRE(agent.at(10) == "S0 10 (third)");
+}
+
 TEST_CASE("a sensation arrives after its latency and opens a cycle; acts take effect after think time and latency") {
   Talk t;
   t.mind.sense(1, "");

@@ -59,7 +59,6 @@ struct Field {
   /// `types`: name and arguments of the test agent, for each a type.
   using Types = std::vector<std::pair<std::string, std::string>>;
   explicit Field(const Types& types, const std::string& timer = "fixed 3", const std::string& further = "") {
-    std::signal(SIGPIPE, SIG_IGN);  // as programs that run simulations do
     kernel.registerClass<Listener>();
     for (const char* plugin : {"simulation", "simulation-spades"}) kernel.plugins().use(plugin);
     kernel.create("Simulation", "/sys/server/simulation");
