@@ -124,12 +124,15 @@ function agentPort(name, port, parser, framing, socket)
   return node
 end
 
---- Game control and the agent port. `parser`: class of the agents' language.
+--- Game control, the timing of agents and the agent port. `parser`: class of the agents' language.
 function agents(t)
   languages()
   plugin "gamecontrol"
   local server = new("GameControl", "/sys/server/gamecontrol")
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
+  local timing = new("AgentTiming", "/sys/server/gamecontrol/timing")
+  timing.senseLatency = option{ name = "senseLatency", default = timing.senseLatency, doc = "Cycles from sensing to the arrival of percepts." }
+  timing.actLatency   = option{ name = "actLatency", default = timing.actLatency, doc = "Cycles by which actions take effect later than without latency." }
   local framing = option{ name = "agentFraming", default = "LengthPrefixFraming",
                           doc = "How bytes become messages: LengthPrefixFraming, or LineFraming, one per line." }
   local socket  = option{ name = "agentSocket", default = "",
@@ -156,7 +159,7 @@ function spades(t)
   local server = new("SpadesServer", "/sys/server/spades")
   new(think, "/sys/server/spades/think")
   local control = new("GameControl", "/sys/server/gamecontrol")
-  control.perceptDelay, control.createEffector = 0, t.effector or "SceneEffector"
+  control.createEffector = t.effector or "SceneEffector"
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
   local schedule = new("SenseSchedule", "/sys/server/gamecontrol/schedule")
   server.logs, server.port, server.address, server.commServers = logs, port, address, servers

@@ -66,19 +66,20 @@ end
 -- of M, the mainline server 0.7.3.
 local versions = {
   M = {
-    ["/sys/server/gamecontrol"] = { agentStep = 0.02 },
+    ["/sys/server/gamecontrol/timing"] = { agentStep = 0.02 },
   },
   -- the SPL's server
   F = {
     ["/sys/server/gamecontrol/parser"] = { decimals = 3 },
-    ["/sys/server/gamecontrol"]        = { agentStep = 0.01, sync = true },
+    ["/sys/server/gamecontrol"]        = { sync = true },
+    ["/sys/server/gamecontrol/timing"] = { agentStep = 0.01 },
     ["/sys/variables/Soccer"]          = {
       ExtraGameState = true, FieldLinesSeen = false, BeamWithinFieldWidth = false, PenaltyWidthBeyondGoal = false, ConstantTemperature = false,
     },
   },
   -- later servers of the 3D league, as far as their clients show it
   L = {
-    ["/sys/server/gamecontrol"] = { agentStep = 0.02 },
+    ["/sys/server/gamecontrol/timing"] = { agentStep = 0.02 },
     ["/sys/variables/Soccer"] = { VisionInterval = 2, UseBallHolding = true },
   },
 }

@@ -129,14 +129,30 @@ class IEye {
   virtual void sights(std::vector<Sight>& out) = 0;
 };
 
-/// Decides when each agent senses. A child of game control; without it all agents sense in the same cycles.
-class IAgentTurns {
+/// How long messages between an agent and the world are under way [cycles].
+struct AgentLatencies {
+  /// From sensing to the arrival of the percepts; 0: they arrive in the cycle in which they were sensed.
+  int sense = 1;
+  /// From the turn that receives an action to the one in which it takes effect; 0: it takes effect at once.
+  int act = 0;
+};
+
+/// Decides when agents sense, when their percepts arrive, and when their actions take effect. A child of game control;
+/// without one, agents have what these functions return here. Simulation thread.
+class IAgentTiming {
  public:
-  SPARK_INTERFACE(IAgentTurns, 1);
-  virtual ~IAgentTurns() = default;
-  /// True if the agent senses in this cycle. Its percepts are then sent even if there are none. Sense phase, simulation
-  /// thread.
-  virtual bool senses(const AgentAspect& agent, std::int64_t cycle) const = 0;
+  SPARK_INTERFACE(IAgentTiming, 1);
+  virtual ~IAgentTiming() = default;
+  /// Cycles from the turn of the agents that begins now to the next one, at least 1. Agents act and sense in their
+  /// turns only. `step`: simulated time of a cycle [s]. Act phase.
+  virtual int cyclesToNextTurn([[maybe_unused]] double step) const { return 1; }
+  /// True if the agent senses in this cycle, which is a turn. Sense phase.
+  virtual bool senses(const AgentAspect&, [[maybe_unused]] std::int64_t cycle) const { return true; }
+  /// True: an agent that has sensed nothing gets a message without percepts.
+  virtual bool sendsEmpty() const { return false; }
+  /// The agent's latencies, neither of them negative; called once in each turn. Messages that are under way keep their
+  /// time, and a later one never arrives before them. Act phase.
+  virtual AgentLatencies latencies(const AgentAspect&) const { return {}; }
 };
 
 /// A port whose agents come back in a run that goes on from a saved state: it starts them itself.

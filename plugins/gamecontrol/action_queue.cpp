@@ -25,6 +25,16 @@ void ActionQueue::append(const Predicates& actions) {
     if (e.isList()) (holdingBack_ && e.head() != first_ ? deferred_ : pending_).append(e);
 }
 
+void ActionQueue::dropPending() {
+  pending_.clear();
+  bytes_ = 0;
+}
+
+void ActionQueue::depart(std::int64_t due) {
+  bytes_ = 0;
+  if (!pending_.empty()) std::swap(underWay_.add(due), pending_);
+}
+
 void ActionQueue::holdBack(std::string_view first) {
   holdingBack_ = true;
   first_ = first;

@@ -1,6 +1,8 @@
 #pragma once
 /// \file
 /// The actions of one agent between their arrival and the act phase that executes them.
+///
+///     message ─► pending ─ the agents' turn ─► under way ─ actLatency ─► executed
 
 #include <cstddef>
 #include <cstdint>
@@ -8,16 +10,17 @@
 #include <string_view>
 #include <utility>
 
+#include "gamecontrol/transit_queue.h"
 #include "spark/predicates.h"
 #include "spark/state.h"
 
 namespace spark::gamecontrol {
 
-/// Three lists: the last message as it was parsed, the pending actions that the next act phase executes, and deferred
-/// actions that become pending later.
+/// The last message as it was parsed, the pending actions that depart in the next turn, deferred actions that become
+/// pending later, and those that are under way.
 class ActionQueue {
  public:
-  /// Counts a message of `bytes`. False if more than `maxBytes` have come since the last executed() or too many
+  /// Counts a message of `bytes`. False if more than `maxBytes` have come since the last depart() or too many
   /// actions wait; the message must not be added then.
   bool reserve(std::size_t bytes, std::size_t maxBytes);
   /// The list for the actions of the next message, emptied.
@@ -28,26 +31,22 @@ class ActionQueue {
   /// The last message.
   const Predicates& lastMessage() const { return message_; }
 
-  /// To be executed in the next act phase.
+  /// Received, but not under way yet.
   const Predicates& pending() const { return pending_; }
-  /// Later than the next act phase.
+  /// Those that wait for releaseHeldBack().
   const Predicates& heldBack() const { return deferred_; }
-  /// A behaviour adds its first actions to it.
+  /// A behaviour adds its actions to it.
   Predicates& pending() { return pending_; }
-  /// A behaviour adds the actions to it that follow from percepts; promote() makes them pending.
-  Predicates& deferred() { return deferred_; }
-  /// Makes all deferred actions pending: behind those that are.
-  void promote() {
-    if (pending_.empty()) std::swap(pending_, deferred_);
-    for (const Element e : deferred_) pending_.append(e);
-    deferred_.clear();
-  }
-  /// Removes the pending actions, which were executed.
-  void executed() {
-    pending_.clear();
-    bytes_ = 0;
-  }
-  /// True in a cycle that executes no actions: the first one, and the one after releaseHeldBack(). Resets it.
+  /// Removes the pending actions.
+  void dropPending();
+  /// The pending actions are under way from now on and take effect in the cycle `due`.
+  void depart(std::int64_t due);
+  /// Those that are.
+  TransitQueue& underWay() { return underWay_; }
+  const TransitQueue& underWay() const { return underWay_; }
+  /// True in a cycle in which no actions depart or take effect: the first one, and the one after releaseHeldBack().
+  bool skips() const { return skipNext_; }
+  /// The same, and resets it.
   bool takeSkip() { return std::exchange(skipNext_, false); }
 
   /// Defers all actions except those with the head `first`, received ones and those to come.
@@ -58,8 +57,8 @@ class ActionQueue {
   /// executed one cycle later.
   void releaseHeldBack();
 
-  /// Number of tokens of pending and deferred actions.
-  std::size_t tokens() const { return pending_.size() + deferred_.size(); }
+  /// Number of tokens of all actions that wait or are under way.
+  std::size_t tokens() const { return pending_.size() + deferred_.size() + underWay_.tokens(); }
   /// Saves the pending and the deferred actions.
   void save(StateWriter& out) const;
   void load(StateReader& in);
@@ -71,8 +70,9 @@ class ActionQueue {
   void append(const Predicates& actions);
 
   bool skipNext_ = true, holdingBack_ = false;
-  std::size_t bytes_ = 0;  ///< received since the last executed()
+  std::size_t bytes_ = 0;  ///< received since the last depart()
   Predicates pending_, deferred_, message_;
+  TransitQueue underWay_;
   std::string first_;  ///< head of the actions that are not held back
 };
 

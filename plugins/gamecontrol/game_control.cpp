@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -21,7 +20,8 @@ void GameControl::describe(Description<GameControl>& d) {
   d.link(&GameControl::joinPolicy_, Child<IJoinPolicy>())
       .doc("Reads the identity of agents that join; without it they have none.");
   d.link(&GameControl::tape_, At<IInputTape>()).doc("Records the wall clock where it decides, or plays it.");
-  d.link(&GameControl::turns_, Child<IAgentTurns>()).doc("Decides when each agent senses; without it all do at once.");
+  d.link(&GameControl::timing_, Child<IAgentTiming>())
+      .doc("Decides when agents act and sense and how long messages are under way; without it as in SimSpark.");
   d.link(&GameControl::judges_, Child<IAgentJudge>()).doc("Judge what agents ask for and do.");
   d.property("requests", &GameControl::requests_)
       .doc(
@@ -46,13 +46,6 @@ void GameControl::describe(Description<GameControl>& d) {
       .doc(
           "Maximum number of robots that are loaded in one cycle in real time, the others in the next ones; in other "
           "modes all are loaded at once.");
-  d.property("perceptDelay", &GameControl::perceptDelay_)
-      .range(0, 1)
-      .doc("Cycles between sensing and sending; SimSpark has 1.");
-  d.property("agentStep", &GameControl::agentStep_)
-      .unit("s")
-      .min(0)
-      .doc("Simulated time between two turns of the agents, in which they act and sense; at most one turn per cycle.");
   d.property("sync", &GameControl::sync_).doc("Waits for the agents' (syn) even if the run loop is not in lockstep.");
   d.property("robotFolder", &GameControl::robotFolder_)
       .doc("Agents' robots are scene files below this folder, e.g. rsg/agent/; empty: any folder.");
@@ -261,25 +254,19 @@ void GameControl::act(const Event& event) {
 }
 
 void GameControl::takeTurn(const Event& event) {
-  // Cycles until the next turn. As in SimSpark, a turn that is due in less than 5 ms is taken now.
-  constexpr double kTolerance = 0.005;  // s
-  const double cycles = event.step > 0 ? std::ceil((agentStep_ - kTolerance) / event.step - 1e-9) : 1;
-  cyclesToTurn_ = static_cast<int>(std::clamp(cycles, 1.0, 1e6)) - 1;
-
+  cyclesToTurn_ = std::max(timing().cyclesToNextTurn(event.step), 1) - 1;
   if (joinPolicy_ && hasVacant())  // without names they went on when they joined
     for (const auto& p : participants_)
       if (!p->vacant() && !p->leaving()) resume(*p);
 
-  // Send the percepts of the last turn, then execute the actions that came before.
-  if (perceptDelay_ > 0)
-    deliver();
-  else
-    for (const auto& p : participants_) p->promote();
+  // Actions that came since the last turn depart, percepts arrive, then actions take effect.
+  for (const auto& p : participants_)
+    p->depart(cycle_, p->aspect() ? timing().latencies(*p->aspect()) : AgentLatencies());
+  deliver();
   activeJudges_.update(judges_);
   for (std::size_t i = 0; i < participants_.size(); ++i) {
     if (lockstep_.hasBudget()) participants_[i]->countAnswer();
     participants_[i]->execute(agentLog(), event, activeJudges_);
-    if (perceptDelay_ > 0) participants_[i]->promote();
   }
 }
 
@@ -293,8 +280,7 @@ void GameControl::sense(const Event& event) {
   dropRemoved();
 
   for (const auto& p : participants_)
-    p->setTurn(turns_.get() == nullptr || (p->aspect() && turns_->senses(*p->aspect(), event.cycle)),
-               turns_.get() != nullptr);
+    p->setTurn(!p->aspect() || timing().senses(*p->aspect(), event.cycle), timing().sendsEmpty());
 
   // Update what several agents' perceptors share. Perceptors that are scripts may change the tree here.
   ++round_;
@@ -309,13 +295,15 @@ void GameControl::sense(const Event& event) {
   kernel().jobs().run(participants_.size(), std::ref(one));  // std::ref: a copy would allocate
   if (faults)
     for (const auto& p : participants_) p->reportFaults(agentLog());
-  if (perceptDelay_ == 0) deliver();
+  deliver();
 }
 
+/// Percepts arrive whose time has come.
 void GameControl::deliver() {
+  const auto arrives = [this](const auto& p) { return p->hasArrivals(cycle_); };
+  if (std::none_of(participants_.begin(), participants_.end(), arrives)) return;
   const auto at = now();
-  for (const auto& p : participants_)
-    if (!p->deliver(agentLog(), cycle_, at, tape_.get())) ++messagesDropped_;
+  for (const auto& p : participants_) messagesDropped_ += p->deliver(agentLog(), cycle_, at, tape_.get());
 }
 
 void GameControl::removeLeaving() {

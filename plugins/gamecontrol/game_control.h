@@ -73,6 +73,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void resolveParsers();
   void resolveRobots();
   void deliver();
+  /// The timing of agents: the child's, otherwise the default.
+  const IAgentTiming& timing() const { return timing_ ? *timing_ : plainTiming_; }
   bool full() const;
   void closeWithoutRobot();
   bool realTime() const;
@@ -98,8 +100,9 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
+  IAgentTiming plainTiming_;
   Link<IInputTape> tape_;
-  Link<IAgentTurns> turns_;
+  Link<IAgentTiming> timing_;
   Links<IAgentJudge> judges_;
   gamecontrol::JudgeList activeJudges_;  ///< of this turn
   std::optional<gamecontrol::AgentLog> log_;
@@ -108,17 +111,17 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   gamecontrol::TokenBucket loadBudget_{0, 4};
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
-  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, perceptDelay_ = 1, loadsPerCycle_ = 4;
+  int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, loadsPerCycle_ = 4;
   bool sync_ = false, requests_ = false;
   bool released_ = false;  ///< the hold is over
   bool restored_ = false;  ///< a state was loaded since the last act phase
-  double joinBudget_ = 30, agentStep_ = 0, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30,
-         answerWait_ = 1, joinPace_ = 0.01, idleLimit_ = 60;
+  double joinBudget_ = 30, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1,
+         joinPace_ = 0.01, idleLimit_ = 60;
 
   int nextNumber_ = 1, agentsSeen_ = 0;
   int loads_ = 0;  ///< robots loaded in this cycle
   std::int64_t messagesDropped_ = 0, cycle_ = 0;
-  int cyclesToTurn_ = 0;     ///< cycles without agents between now and their next turn, see agentStep
+  int cyclesToTurn_ = 0;     ///< cycles without agents between now and their next turn
   bool isTurn_ = true;       ///< agents act and sense in this cycle
   std::uint64_t round_ = 0;  ///< number of the sense phase
   TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;

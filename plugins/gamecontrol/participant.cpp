@@ -40,7 +40,7 @@ Participant::Participant(int number, AgentAspect& aspect, Behavior* behavior)
 
 void Participant::connect(IConnection& connection, Clock::time_point now) {
   connection_ = &connection;
-  vacant_ = false;
+  vacant_ = encoded_ = false;
   label_ = fmt::format("agent {} ({})", number_, connection.peer());
   joinedAt_ = lastHeard_ = now;
 }
@@ -50,9 +50,8 @@ void Participant::takeOver(Participant& client, Clock::time_point now) {
   heardFrom_ = true;
   parser_ = client.parser_;
   lockstep_.resume(client.lockstep_);
-  encode();
   client.connection_ = nullptr;
-  client.actions_.executed();
+  client.actions_.dropPending();
   client.leave();
 }
 
@@ -137,35 +136,38 @@ bool Participant::isSync(std::string_view predicate) const {
   return predicate == (hasRobot_ ? std::string_view(effectors_.syncPredicate()) : kSync) && !predicate.empty();
 }
 
+void Participant::depart(std::int64_t cycle, const AgentLatencies& latencies) {
+  latencies_ = latencies;
+  if (!actions_.skips() && !waitsForRobot()) actions_.depart(cycle + latencies.act);
+}
+
 void Participant::execute(AgentLog& log, const Event& event, const JudgeList& judges) {
   const std::int64_t cycle = event.cycle;
   lockstep_.beginCycle();
   // In the cycle in which an agent connects, only its aspect is created.
-  if (actions_.takeSkip()) return;
-  // While the robot waits to be loaded, actions are kept for it.
-  if (!hasRobot_ && effectors_.loading()) return;
+  if (actions_.takeSkip() || waitsForRobot()) return;
 
   EffectorTable::Lookup lookup(effectors_);
   NowRunning now("act");
-  for (const Element action : actions_.pending()) {
-    if (!action.isList()) continue;
-    if (leaving_) break;  // a judge disqualified it
-    const std::string_view head = action.head();
-    if (head.empty()) {
-      warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
-      continue;
+  for (TransitQueue& arriving = actions_.underWay(); arriving.hasArrived(cycle); arriving.pop())
+    for (const Element action : arriving.first()) {
+      if (!action.isList()) continue;
+      if (leaving_) break;  // a judge disqualified it
+      const std::string_view head = action.head();
+      if (head.empty()) {
+        warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
+        continue;
+      }
+      const auto [effector, modified] = lookup.find(head);
+      if (modified && effector) {
+        modified->actions.append(action);
+      } else if (effector) {
+        now.at(effector);
+        executeAction(*effector, action, log, cycle, judges);
+      } else if (hasRobot_ || head != kSync) {
+        warnUnknown(log, cycle, head);
+      }
     }
-    const auto [effector, modified] = lookup.find(head);
-    if (modified && effector) {
-      modified->actions.append(action);
-    } else if (effector) {
-      now.at(effector);
-      executeAction(*effector, action, log, cycle, judges);
-    } else if (hasRobot_ || head != kSync) {
-      warnUnknown(log, cycle, head);
-    }
-  }
-  actions_.executed();
   executeModified(log, event, judges);
 }
 
@@ -217,10 +219,10 @@ bool Participant::resolveRobot() {
   if (std::exchange(robotAt_, changedAt) == changedAt) return false;
   if (!root) {
     effectors_.clear();
-    percepts_.clear();
+    perceptors_.clear();
     return false;
   }
-  const std::size_t effectors = effectors_.rebuild(*root), perceptors = percepts_.rebuild(*root);
+  const std::size_t effectors = effectors_.rebuild(*root), perceptors = perceptors_.rebuild(*root);
   const bool first = !hasRobot_ && (perceptors > given_.perceptors || effectors > given_.effectors);
   blind_ = perceptors <= given_.perceptors;
   hasRobot_ |= first;
@@ -230,23 +232,33 @@ bool Participant::resolveRobot() {
 bool Participant::sense(const Event& event) {
   if (!turn_) return true;
   cycles_ = nextCycle();
-  const bool fine = percepts_.sense(event, cycles_);
+  const bool fine = perceptors_.sense(percepts_.add(event.cycle + latencies_.sense), event, cycles_);
   encode();
   return fine;
 }
 
 void Participant::encode() {
+  if (std::exchange(encoded_, true)) return;
   message_.clear();
-  if (!percepts().empty() && connection_ && parser_) parser_->write(percepts(), message_);
+  if (!percepts_.first().empty() && connection_ && parser_) parser_->write(percepts_.first(), message_);
 }
 
-bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
-  if (leaving() || vacant_ || !turn_) return true;
-  if (percepts().empty() && !(inside_ ? blind_ && hasRobot_ : sendsEmpty_)) return true;
+int Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
+  int dropped = 0;
+  for (; percepts_.hasArrived(cycle); percepts_.pop(), encoded_ = false)
+    if (!deliverFirst(log, cycle, now, tape)) ++dropped;
+  return dropped;
+}
+
+/// False if the message was dropped.
+bool Participant::deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
+  if (leaving() || vacant_) return true;
+  if (percepts_.first().empty() && !(inside_ ? blind_ && hasRobot_ : sendsEmpty_)) return true;
   if (inside_) {
     think(log, cycle);
     return true;
   }
+  encode();
   bool sent = connection_->send(message_);
   if (tape) sent = tape->decide("sent", static_cast<std::uint64_t>(number_), sent, true);
   if (!sent) return false;
@@ -259,9 +271,9 @@ bool Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point n
 
 void Participant::think(AgentLog& log, std::int64_t cycle) {
   const NowRunning now("think", behavior());
-  Predicates& actions = actions_.deferred();
+  Predicates& actions = actions_.pending();
   try {
-    behavior()->think(percepts(), actions);
+    behavior()->think(percepts_.first(), actions);
   } catch (const std::exception& fault) {
     if (behavior()) behavior()->kernel().countFault();  // it may have removed itself
     warn(log, cycle, fmt::format("it threw: {}", fault.what()));
@@ -315,11 +327,17 @@ void Participant::save(StateWriter& out) const {
     lockstep_.save(own);
     if (!inside_) actions_.save(own);
     actions_.saveHold(own);
+    own.write(actions_.underWay().size());
+    own.write(percepts_.size());
+    own.write(percepts_.size() > 0 ? percepts_.lastDue() : 0);
     out.aside(own.bytes());
   }
   out.write(cycles_);
+  // What was sensed last is saved whether it is under way or not.
   out.write(Value(toList(percepts())));
   if (inside_) actions_.save(out);
+  percepts_.save(out, percepts_.size() > 0 ? percepts_.size() - 1 : 0);
+  actions_.underWay().save(out, actions_.underWay().size());
 }
 
 std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node& root) {
@@ -341,9 +359,17 @@ std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node
   out->lockstep_.load(own);
   if (!inside) out->actions_.load(own);
   out->actions_.loadHold(own);
+  const auto acts = static_cast<std::size_t>(own.readInteger());
+  const auto percepts = static_cast<std::size_t>(own.readInteger());
+  const std::int64_t lastDue = own.readInteger();
   out->cycles_ = in.readInteger();
-  loadPredicates(in, out->percepts_.percepts());
+  Predicates last;
+  loadPredicates(in, last);
   if (inside) out->actions_.load(in);
+  out->percepts_.load(in, percepts > 0 ? percepts - 1 : 0);
+  std::swap(out->percepts_.add(lastDue), last);
+  if (percepts == 0) out->percepts_.pop();
+  out->actions_.underWay().load(in, acts);
   // A robot that was built in the last cycle is looked up in the next one.
   if (resolved || out->hasRobot_) out->resolveRobot();
   return out;

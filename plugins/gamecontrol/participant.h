@@ -2,12 +2,12 @@
 /// \file
 /// One agent: where its actions come from, its effectors and perceptors, and what is sent to it.
 ///
-///     message ─► parser ─► ActionQueue ─ act phase ──► EffectorTable ─► effectors
-///     message ◄─ parser ◄───────────── PerceptBuffer ◄─ sense phase ──── perceptors
+///     message ─► parser ─► ActionQueue ── act phase ───► EffectorTable ──► effectors
+///     message ◄─ parser ◄─ TransitQueue ◄─ sense phase ─ PerceptorTable ◄─ perceptors
 ///
 /// Where a perceptor or an effector has modifiers, they are applied in between.
 ///
-/// Its latency is that of SimSpark, which recorded matches depend on:
+/// Where nothing else is set, its latencies are those of SimSpark, which recorded matches depend on:
 ///
 ///     cycle k      connected: its aspect is created, its cycle count is 1
 ///     cycle k+1    the first message is executed: (scene ...) is stored in act, the robot is built in prepare
@@ -35,7 +35,8 @@
 #include "gamecontrol/line_budget.h"
 #include "gamecontrol/lockstep_record.h"
 #include "gamecontrol/mistakes.h"
-#include "gamecontrol/percept_buffer.h"
+#include "gamecontrol/perceptor_table.h"
+#include "gamecontrol/transit_queue.h"
 #include "spark/state.h"
 
 namespace spark::gamecontrol {
@@ -103,13 +104,15 @@ class Participant {
   Clock::time_point joinedAt() const { return joinedAt_; }
   void joinedSince(Clock::time_point then) { joinedAt_ = then; }
   /// True while it has sent messages but its first percepts may be under way.
-  bool joining() const { return heardFrom_ && sent_ == 0 && cycles_ <= kCyclesToFirstPercepts; }
+  bool joining() const {
+    return heardFrom_ && sent_ == 0 && cycles_ <= kCyclesToSense + latencies_.act + latencies_.sense;
+  }
 
   // ---- actions ----
 
   /// Looks up the parser of a client: the one below its port, otherwise the one below `gameControl`.
   void resolveParser(Node& gameControl);
-  /// Parses a message; its actions are executed in the next act phase. `maxPending`: bytes per cycle. Returns "", or
+  /// Parses a message; its actions depart in the next turn. `maxPending`: bytes per cycle. Returns "", or
   /// why the connection is to be closed.
   std::string receive(std::string_view message, std::size_t maxPending, AgentLog& log, std::int64_t cycle,
                       Clock::time_point now);
@@ -117,21 +120,19 @@ class Participant {
   bool heardFrom() const { return heardFrom_; }
   /// When the last message came; before the first one, when it was created.
   Clock::time_point lastHeard() const { return lastHeard_; }
-  /// Received actions that are not executed yet.
+  /// Received actions that are not under way yet.
   const Predicates& pending() const { return actions_.pending(); }
   /// Those that are held back.
   const Predicates& deferred() const { return actions_.heldBack(); }
   /// The last message that could be parsed; before join() only, valid until the next one.
   const Predicates& lastMessage() const { return actions_.lastMessage(); }
-  /// Executes the pending actions that no judge refuses. `event`: of the act phase.
+  /// A turn of the agents begins: what it has received departs. `latencies`: of what it does and senses in this turn.
+  void depart(std::int64_t cycle, const AgentLatencies& latencies);
+  /// Executes the actions that are due and that no judge refuses. `event`: of the act phase.
   void execute(AgentLog& log, const Event& event, const JudgeList& judges);
   /// Logs that an action with that predicate had no effect, or another than it says, and why: once for each kind of
   /// mistake. False if the line was dropped because there were too many.
   bool remark(AgentLog& log, std::int64_t cycle, std::string_view predicate, std::string_view why);
-  /// Inside the host: the actions that followed from the last percepts become pending.
-  void promote() {
-    if (inside_) actions_.promote();
-  }
 
   // ---- percepts ----
 
@@ -141,7 +142,7 @@ class Participant {
   /// True if it has or had a robot.
   bool hasRobot() const { return hasRobot_; }
   /// Forgets perceptors that were removed, after a change of the tree.
-  void dropRemovedPerceptors() { percepts_.dropRemoved(); }
+  void dropRemovedPerceptors() { perceptors_.dropRemoved(); }
   /// Sets whether it senses in this cycle. `always`: its percepts are sent even if there are none.
   void setTurn(bool senses, bool always) {
     turn_ = senses;
@@ -149,20 +150,22 @@ class Participant {
   }
   /// Updates what its perceptors share with those of others, before sense(). `round`: number of the sense phase.
   void share(std::uint64_t round) {
-    if (turn_) percepts_.share(round, nextCycle());
+    if (turn_) perceptors_.share(round, nextCycle());
   }
-  /// Counts the cycle, calls the perceptors that are due and encodes the message. Any thread; changes only this agent.
-  /// False if reportFaults() has something to report.
+  /// Counts the cycle, calls the perceptors that are due, and encodes the message that arrives next. Any thread;
+  /// changes only this agent. False if reportFaults() has something to report.
   bool sense(const Event& event);
   /// After sense(), in the simulation thread.
-  void reportFaults(AgentLog& log) { percepts_.reportFaults(label_, log); }
-  /// Sends the percepts of the last sense(), or calls the behavior with them. `now`: the time of the phase. False if
-  /// the message was dropped because the client has not read an earlier one. `tape`: nullptr if there is none.
-  bool deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape);
+  void reportFaults(AgentLog& log) { perceptors_.reportFaults(label_, log); }
+  /// True if percepts arrive in this cycle.
+  bool hasArrivals(std::int64_t cycle) const { return percepts_.hasArrived(cycle); }
+  /// Sends the percepts that arrive, or calls the behavior with them. `now`: the time of the phase. Returns the number
+  /// of messages that were dropped because the client has not read an earlier one. `tape`: nullptr if there is none.
+  int deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape);
   /// Number of messages with percepts that were sent.
   std::int64_t sent() const { return sent_; }
   /// What was sensed last.
-  const Predicates& percepts() const { return percepts_.percepts(); }
+  const Predicates& percepts() const { return percepts_.newest(); }
   /// Wall time from percepts to the answer [s], smoothed; NaN if unknown.
   double latency() const { return latency_.seconds(); }
 
@@ -207,12 +210,16 @@ class Participant {
   static std::unique_ptr<Participant> load(StateReader& in, int number, Node& root);
 
  private:
-  static constexpr std::int64_t kCyclesToFirstPercepts = 3;
+  /// In cycle 3 the agent senses first, if its first message named its robot and has no latency.
+  static constexpr std::int64_t kCyclesToSense = 2;
   bool canSync() const { return !vacant_ && !effectors_.syncPredicate().empty() && sent_ > 0; }
   bool isSync(std::string_view predicate) const;
   void executeModified(AgentLog& log, const Event& event, const JudgeList& judges);
   void executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
                      const JudgeList& judges);
+  /// While its robot waits to be loaded, actions are kept for it.
+  bool waitsForRobot() const { return !hasRobot_ && effectors_.loading(); }
+  bool deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape);
   void think(AgentLog& log, std::int64_t cycle);
   /// The cycle count in the next sense phase.
   std::int64_t nextCycle() const { return cycles_ + (inside_ || heardFrom_ || cycles_ == 0); }
@@ -240,8 +247,11 @@ class Participant {
   LockstepRecord lockstep_;
   ActionQueue actions_;
   EffectorTable effectors_;
-  PerceptBuffer percepts_;
-  std::string message_;      ///< the encoded percepts
+  PerceptorTable perceptors_;
+  TransitQueue percepts_;
+  AgentLatencies latencies_;  ///< of this turn
+  std::string message_;       ///< the first message of percepts_, encoded if `encoded_`
+  bool encoded_ = false;
   std::int64_t cycles_ = 0;  ///< the agent's cycle count
   std::int64_t sent_ = 0;
   std::uint64_t robotAt_ = 0;  ///< AgentAspect::changedAt() at the last resolveRobot()

@@ -1,6 +1,7 @@
 #include "spark/plugin.h"
 
 #include "api/modifier.h"
+#include "gamecontrol/agent_timing.h"
 #include "gamecontrol/game_control.h"
 #include "gamecontrol/judges.h"
 #include "gamecontrol/request_effector.h"
@@ -12,7 +13,8 @@
 
 SPARK_PLUGIN("gamecontrol", "1.0",
              "Agents: their connections and behaviours, effectors, perceptors, and the rules' base.",
-             spark::GameControl, spark::AgentAspect, spark::Perceptor, spark::Effector, spark::ControlAspect,
-             spark::Behavior, spark::Modifier, spark::NumberModifier, spark::SceneEffector, spark::RequestEffector,
-             spark::RequestPerceptor, spark::RequestAspect, spark::ActionLimitAspect, spark::ScriptBehavior,
-             spark::ScriptPerceptor, spark::ScriptEffector, spark::ScriptAspect)
+             spark::GameControl, spark::AgentTiming, spark::AgentLatency, spark::AgentAspect, spark::Perceptor,
+             spark::Effector, spark::ControlAspect, spark::Behavior, spark::Modifier, spark::NumberModifier,
+             spark::SceneEffector, spark::RequestEffector, spark::RequestPerceptor, spark::RequestAspect,
+             spark::ActionLimitAspect, spark::ScriptBehavior, spark::ScriptPerceptor, spark::ScriptEffector,
+             spark::ScriptAspect)

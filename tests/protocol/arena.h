@@ -256,6 +256,12 @@ class Arena {
   }
   Client client(const std::string& name = "agents") { return Client(*this, portNumber(name)); }
   void set(const char* name, Value v) { setProperty(*kernel.root().find("/sys/server/gamecontrol"), name, v); }
+  /// Sets a property of the agents' timing, which is created if there is none.
+  void setTiming(const char* name, Value v) {
+    constexpr const char* kTiming = "/sys/server/gamecontrol/timing";
+    Leaf* const timing = kernel.root().find(kTiming);
+    setProperty(timing ? *timing : kernel.create("AgentTiming", kTiming), name, std::move(v));
+  }
   Value get(const char* name) { return getProperty(*kernel.root().find("/sys/server/gamecontrol"), name); }
   std::size_t agents() const { return control->agents().size(); }
 

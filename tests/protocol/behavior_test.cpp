@@ -75,9 +75,9 @@ TEST_CASE("The pending actions and percepts of a behavior are part of the state"
   REQUIRE(b.first == Approx(4 * 0.02));
 }
 
-TEST_CASE("Without percept delay a behavior acts one cycle earlier") {
+TEST_CASE("Without latency of percepts a behavior acts one cycle earlier") {
   Arena a;
-  a.set("perceptDelay", 0);
+  a.setTiming("senseLatency", 0);
   a.kernel.registerClass<TestBehavior>();
   auto& b = a.kernel.create<TestBehavior>("TestBehavior", "/usr/agent/b");
   a.cycle();

@@ -115,7 +115,7 @@ TEST_CASE("Without lockstep the simulation does not wait for agents unless game 
 
 TEST_CASE("With agentStep agents act and sense only in some cycles, and the simulation waits only in those") {
   Arena a(true);
-  a.set("agentStep", 0.06);
+  a.setTiming("agentStep", 0.06);
   Client c = joined(a);
   c.send("(syn)");
   c.arrive();
@@ -129,7 +129,7 @@ TEST_CASE("With agentStep agents act and sense only in some cycles, and the simu
     REQUIRE(c.receive().has_value());
     REQUIRE(c.drain().empty());
   }
-  a.set("agentStep", 0.024);  // a step that is due in less than 5 ms is due now
+  a.setTiming("agentStep", 0.024);  // a step that is due in less than 5 ms is due now
   c.send("(syn)");
   c.arrive();
   cyclesUntilBlocked(a);

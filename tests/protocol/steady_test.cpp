@@ -26,7 +26,9 @@ class TestIdle : public Effector {
 
 struct Match : Arena {
   std::vector<Client> clients;
-  Match() : Arena(true) {
+  explicit Match(int senseLatency = 1, int actLatency = 0) : Arena(true) {
+    setTiming("senseLatency", senseLatency);
+    setTiming("actLatency", actLatency);
     kernel.registerClass<TestIdle>();
     kernel.log().setLevel(Level::warning);
     set("expect", 4);
@@ -62,6 +64,14 @@ std::size_t heap() { return mallinfo2().uordblks; }
 TEST_CASE("A cycle with sending agents allocates nothing in steady state") {
   Match m;
   m.play(20);
+  Allocations::count = 0;
+  m.play(100);
+  REQUIRE(Allocations::count == 0);
+}
+
+TEST_CASE("Messages with latencies allocate nothing in steady state") {
+  Match m(7, 5);
+  m.play(30);
   Allocations::count = 0;
   m.play(100);
   REQUIRE(Allocations::count == 0);

@@ -249,6 +249,13 @@ void makeMatch(World& w) { w.configure("soccer.lua", {{"team", "Red Blue"}, {"pl
 
 void makeSphereMatch(World& w) { w.configure("soccer-sphere.lua", {{"team", "Red Blue"}, {"players", 3}}); }
 
+void makeLateMatch(World& w) {
+  w.configure("soccer-sphere.lua", {{"team", "Red Blue"}, {"players", 3}, {"senseLatency", 4}, {"actLatency", 3}});
+  Leaf& own = w.kernel.create("AgentLatency", "/sys/server/gamecontrol/timing/second");
+  setProperty(own, "agent", 2);
+  setProperty(own, "senseLatency", 10);
+}
+
 void makeScripts(World& w) {
   w.configureByText(R"lua(
     include "house.lua"
@@ -314,6 +321,7 @@ const std::vector<Scenario>& scenarios() {
       {"fallers", makeFallers, inputFallers, 125},
       {"match", makeMatch, inputReplay, 150},
       {"sphere match", makeSphereMatch, inputReplay, 200},
+      {"late match", makeLateMatch, inputReplay, 200},
       {"scripts", makeScripts, inputReplay, 50},
   };
   return all;

@@ -314,7 +314,9 @@ TEST_CASE("settings without a target are errors that suggest similar names") {
        "unknown setting 'Socer.FieldLength': there is no /sys/variables/Socer. Did you mean 'Soccer.FieldLength'?"},
       {"/usr/bal.mass", "unknown setting '/usr/bal.mass': there is no /usr/bal. Did you mean '/usr/ball.mass'"},
       {"/usr/ball.mas",
-       "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"}};
+       "unknown setting '/usr/ball.mas': /usr/ball (class Thing) has no property 'mas'. Did you mean 'mass'?"},
+      {"/usr.mass",
+       "unknown setting '/usr.mass': /usr (class Node) has no property 'mass'. Thing has a property of that name."}};
   for (const auto& [key, expected] : cases) {
     LuaHost h;
     scripts(h.kernel).addOverride(key, Value(1));

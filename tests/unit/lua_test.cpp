@@ -270,6 +270,9 @@ TEST_CASE("the error for an unknown name suggests a similar name") {
   CHECK_THAT(h.failure("get('/usr/a'):ad(1, 2)"), Contains("has no property or method 'ad'. Did you mean 'add'"));
   CHECK_THAT(h.failure("get('/usr/a').lable = 'x'"),
              Equals("test:1: /usr/a (class Thing) has no property 'lable'. Did you mean 'label'?"));
+  // a property of another class
+  CHECK_THAT(h.failure("new('Node', '/usr/n').mass = 1"),
+             Contains("has no property 'mass'.") && Contains("Thing has a property of that name."));
   CHECK_THAT(h.failure("get('/usr/a'):childen()"), Contains("Did you mean 'children'?"));
   CHECK_THAT(h.failure("new('Thin', '/usr/b')"), Contains("test:1: there is no class 'Thin'. Did you mean 'Thing'?"));
 }

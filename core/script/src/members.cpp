@@ -1,8 +1,12 @@
 #include "members.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 
+#include "spark/class_object.h"
+#include "spark/error.h"
 #include "spark/kernel.h"
 
 namespace spark::script {
@@ -36,6 +40,18 @@ std::vector<std::string> memberNames(const Leaf& leaf) {
     for (const Value& n : variables.toList()) names.push_back(n.plain());
   }
   return names;
+}
+
+std::string memberHint(const Leaf& leaf, std::string_view name, const std::vector<std::string>& names) {
+  constexpr std::size_t kMost = 3;
+  std::vector<std::string> owners;
+  for (ClassObject* c : leaf.kernel().classes())
+    if (c->property(name) && !(c->base() && c->base()->property(name))) owners.push_back(c->name());
+  std::string hint = didYouMean(name, names);
+  if (owners.empty() || owners.size() > kMost) return hint;
+  std::sort(owners.begin(), owners.end());
+  return fmt::format("{} {} {} a property of that name.", hint, fmt::join(owners, ", "),
+                     owners.size() == 1 ? "has" : "have");
 }
 
 }  // namespace spark::script

@@ -24,5 +24,8 @@ bool hasMember(const Leaf& leaf, std::string_view name);
 void setMember(Leaf& leaf, std::string_view name, const Value& value);
 /// The names of all properties and variables.
 std::vector<std::string> memberNames(const Leaf& leaf);
+/// What follows the sentence that a node has no member `name`: which of its `names` are similar, and which other
+/// classes have a property of that name, if these are few.
+std::string memberHint(const Leaf& leaf, std::string_view name, const std::vector<std::string>& names);
 
 }  // namespace spark::script

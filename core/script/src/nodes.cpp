@@ -178,7 +178,7 @@ void pushMethod(lua_State* L, std::string_view name) {
     for (const Method* m : leaf.classObject()->methods()) names.push_back(m->name);
   }
   throw Error(fmt::format("{} (class {}) has no property{} '{}'.{}", leaf.path(), leaf.classObject()->name(),
-                          readable ? " or method" : "", name, didYouMean(name, names)));
+                          readable ? " or method" : "", name, memberHint(leaf, name, names)));
 }
 
 /// node.key. Upvalues: the functions that every node has, and those of pushMethod(), both by name.

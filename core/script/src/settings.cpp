@@ -112,7 +112,7 @@ void Settings::set(Override& o, Leaf& target) {
     o.met = o.met || hasMember(target, o.member);
   } else if (!hasMember(target, o.member)) {
     throw Error(fmt::format("unknown setting '{}': {} (class {}) has no property '{}'.{}", o.key, target.path(),
-                            target.classObject()->name(), o.member, didYouMean(o.member, memberNames(target))));
+                            target.classObject()->name(), o.member, memberHint(target, o.member, memberNames(target))));
   } else {
     o.met = true;
   }

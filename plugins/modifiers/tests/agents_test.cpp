@@ -126,7 +126,7 @@ TEST_CASE("A percept is exactly so many cycles late, whatever the interval of it
 
 TEST_CASE("With agentStep the cycles of a delay are turns of the agent") {
   Lab lab("(nd CycleSensor (setName s) (nd Delay (setCycles 2)))");
-  setProperty(lab.kernel.root().require<Leaf>("/sys/server/gamecontrol"), "agentStep", 0.06);
+  setProperty(lab.kernel.create("AgentTiming", "/sys/server/gamecontrol/timing"), "agentStep", 0.06);
   lab.run(9);  // turns in cycles 4, 7, 10
   CHECK(lab.sensed() == "(C (n s) (v 4.00 4.00))");
   CHECK(lab.sense() == "(C (n s) (v 7.00 7.00))");

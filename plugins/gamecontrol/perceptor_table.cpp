@@ -1,4 +1,4 @@
-#include "gamecontrol/percept_buffer.h"
+#include "gamecontrol/perceptor_table.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 namespace spark::gamecontrol {
 
-std::size_t PerceptBuffer::rebuild(AgentAspect& root) {
+std::size_t PerceptorTable::rebuild(AgentAspect& root) {
   shared_.clear();
   std::vector<Perceptor*> perceptors;
   root.collect(perceptors);
@@ -21,62 +21,60 @@ std::size_t PerceptBuffer::rebuild(AgentAspect& root) {
   return sensors_.size();
 }
 
-void PerceptBuffer::clear() {
+void PerceptorTable::clear() {
   sensors_.clear();
   shared_.clear();
   called_.clear();
 }
 
-void PerceptBuffer::dropRemoved() {
+void PerceptorTable::dropRemoved() {
   std::erase_if(sensors_, [](const Sensor& s) { return !s.perceptor; });
   std::erase_if(shared_, [](const Shared& s) { return !s.perceptor; });
   called_.clear();
   for (const Sensor& s : sensors_) called_.push_back({s.perceptor.get(), s.modifiers.get()});
 }
 
-void PerceptBuffer::share(std::uint64_t round, std::int64_t cycle) {
+void PerceptorTable::share(std::uint64_t round, std::int64_t cycle) {
   if (shared_.empty()) return;
   NowRunning now("share");
   for (const Shared& s : shared_)
     if (s.perceptor && isDue(*s.called, cycle)) now.at(s.called), s.view->share(round);
 }
 
-bool PerceptBuffer::sense(const Event& event, std::int64_t cycle) {
-  percepts_.clear();
+bool PerceptorTable::sense(Predicates& out, const Event& event, std::int64_t cycle) {
   NowRunning now("sense");
   for (std::size_t i = 0; i < called_.size(); ++i) {
     const Called& c = called_[i];
-    const std::uint32_t first = percepts_.size();
+    const std::uint32_t first = out.size();
     if (isDue(*c.perceptor, cycle)) {
       now.at(c.perceptor);
-      guard(i, first, [&] { c.perceptor->sense(percepts_, event); });
+      guard(i, out, first, [&] { c.perceptor->sense(out, event); });
     }
-    if (c.modifiers)
-      guard(i, first, [&] { c.modifiers->apply({Signal::Kind::percept, percepts_, first}, event, now); });
+    if (c.modifiers) guard(i, out, first, [&] { c.modifiers->apply({Signal::Kind::percept, out, first}, event, now); });
   }
   return faulty_ == kNone && unbalanced_ == kNone;
 }
 
 /// No exception may leave a worker thread: it would end the process.
 template <class F>
-void PerceptBuffer::guard(std::size_t perceptor, std::uint32_t first, F run) {
+void PerceptorTable::guard(std::size_t perceptor, Predicates& out, std::uint32_t first, F run) {
   try {
     run();
   } catch (const std::exception& fault) {
-    percepts_.truncate(first);
+    out.truncate(first);
     faulty_ = perceptor;
     fault_ = fault.what();
   } catch (...) {
-    percepts_.truncate(first);
+    out.truncate(first);
     faulty_ = perceptor;
     fault_ = "something that is no std::exception";
   }
-  if (percepts_.isUnbalanced()) [[unlikely]]
-    closeLists(perceptor);
+  if (out.isUnbalanced()) [[unlikely]]
+    closeLists(perceptor, out);
 }
 
-void PerceptBuffer::closeLists(std::size_t perceptor) {
-  const int open = percepts_.balance();
+void PerceptorTable::closeLists(std::size_t perceptor, Predicates& out) {
+  const int open = out.balance();
   const std::uint64_t id = called_[perceptor].perceptor->id();
   if (unbalanced_ != kNone || std::find(reported_.begin(), reported_.end(), id) != reported_.end()) return;
   reported_.push_back(id);
@@ -84,7 +82,7 @@ void PerceptBuffer::closeLists(std::size_t perceptor) {
   openLists_ = open;
 }
 
-void PerceptBuffer::reportFaults(std::string_view label, AgentLog& log) {
+void PerceptorTable::reportFaults(std::string_view label, AgentLog& log) {
   if (const Perceptor* p = unbalanced_ != kNone ? sensors_[unbalanced_].perceptor.get() : nullptr)
     log.write(Level::error, fmt::format("{}: {} ({}) {} in sense(); its percept is as if it had closed what it opened. "
                                         "Each open() needs one close(). This is reported once.",

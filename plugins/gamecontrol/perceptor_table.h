@@ -1,6 +1,6 @@
 #pragma once
 /// \file
-/// The perceptors of one agent and what they sensed last.
+/// The perceptors of one agent.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace spark::gamecontrol {
 
-/// Calls the perceptors that are due, applies their modifiers and keeps the percepts. A perceptor that throws is not
+/// Calls the perceptors that are due and applies their modifiers. A perceptor that throws is not
 /// called again; one that leaves lists open is reported, and the lists are closed so that they do not swallow other
 /// percepts.
-class PerceptBuffer {
+class PerceptorTable {
  public:
   /// Collects the perceptors below `root`. Returns their number.
   std::size_t rebuild(AgentAspect& root);
-  /// Removes all perceptors; the percepts stay.
+  /// Removes all perceptors.
   void clear();
   /// Forgets perceptors that were removed from the tree. Call it after a change of the tree and before share().
   void dropRemoved();
@@ -30,16 +30,12 @@ class PerceptBuffer {
   /// Updates what the due perceptors share with others (ISharedView). Sense phase, simulation thread, before any
   /// sense(). `round`: number of the sense phase; `cycle`: the agent's cycle count.
   void share(std::uint64_t round, std::int64_t cycle);
-  /// Replaces the percepts by those of the perceptors that are due in the agent's `cycle`. Any thread; changes only
-  /// this agent. False if there is something for reportFaults().
-  bool sense(const Event& event, std::int64_t cycle);
+  /// Adds the percepts of the perceptors that are due in the agent's `cycle` to `out`, which is empty. Any thread;
+  /// changes only this agent. False if there is something for reportFaults().
+  bool sense(Predicates& out, const Event& event, std::int64_t cycle);
   /// Reports a perceptor that threw and removes it; reports one that left lists open, once each. Simulation thread.
   /// `label`: the agent, for the log.
   void reportFaults(std::string_view label, AgentLog& log);
-
-  /// What was sensed last.
-  const Predicates& percepts() const { return percepts_; }
-  Predicates& percepts() { return percepts_; }
 
  private:
   static constexpr std::size_t kNone = static_cast<std::size_t>(-1);
@@ -59,13 +55,12 @@ class PerceptBuffer {
     const Perceptor* called;  ///< as in `called_`
   };
   static bool isDue(const Perceptor& p, std::int64_t cycle) { return cycle % std::max(1, p.interval()) == 0; }
-  /// Calls `run`, which adds percepts from token `first` on. If it throws, these are removed and the perceptor with
-  /// that index is noted.
+  /// Calls `run`, which adds percepts to `out` from token `first` on. If it throws, these are removed and the perceptor
+  /// with that index is noted.
   template <class F>
-  void guard(std::size_t perceptor, std::uint32_t first, F run);
-  void closeLists(std::size_t perceptor);
+  void guard(std::size_t perceptor, Predicates& out, std::uint32_t first, F run);
+  void closeLists(std::size_t perceptor, Predicates& out);
 
-  Predicates percepts_;
   std::vector<Sensor> sensors_;  ///< in tree order
   std::vector<Called> called_;   ///< the same
   std::vector<Shared> shared_;   ///< perceptors that offer ISharedView
