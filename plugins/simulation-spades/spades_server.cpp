@@ -97,6 +97,10 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
       .unit("steps")
       .range(1, 10000)
       .doc("Time from the end of a thought until its acts take effect.");
+  d.property("thinkTimes", &S::thinkTimes_)
+      .doc(
+          "After each cycle the agent gets K<steps>, how long it has thought. It must answer D, as agents of the time "
+          "do.");
   d.property("mostThought", &S::mostThought_)
       .unit("s")
       .min(0.01)
@@ -279,6 +283,10 @@ void SpadesServer::exchange(Agent& a) {
         acts_.clear();
         a.mind.end(thought, acts_);
         for (spades::Act& act : acts_) a.acts.push_back(std::move(act));
+        if (thinkTimes_) {
+          a.began = Clock::now();
+          a.link->send(a.mind.inform());
+        }
         break;
       case AgentMind::Result::exit:
         a.lose("it leaves");
@@ -290,9 +298,12 @@ void SpadesServer::exchange(Agent& a) {
   }
   if (!a.link->lost().empty()) a.lose(a.link->lost());
   if (!a.link->reachable()) a.began = Clock::now();  // it may have answered
-  const bool waitedFor = a.mind.thinking() || !a.mind.ready();
-  if (waitedFor && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
-    a.lose(fmt::format("it {} for more than {} s", a.mind.ready() ? "thinks" : "says nothing", mostThought_));
+  const char* const waits = !a.mind.ready()     ? "says nothing"
+                            : a.mind.thinking() ? "thinks"
+                            : a.mind.informed() ? "does not answer K"
+                                                : nullptr;
+  if (waits && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
+    a.lose(fmt::format("it {} for more than {} s", waits, mostThought_));
 }
 
 /// Passes the next message to the agent that is due.

@@ -75,6 +75,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
 
   spades::Latencies latencies_;
   std::string database_, logs_, consumerPath_ = "/sys/server/gamecontrol";
+  bool thinkTimes_ = false;
   double mostThought_ = 10, shutdown_ = 2, away_ = 30;
   std::string address_ = "127.0.0.1", token_;
   int port_ = -1, commServers_ = 0;

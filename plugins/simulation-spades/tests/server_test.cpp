@@ -112,6 +112,33 @@ TEST_CASE("An agent in C creates, joins and plays, each act at its simulated tim
   REQUIRE(text == "Spheres plays");
 }
 
+TEST_CASE("An agent is informed how long it has thought, and plays as without that") {
+  const auto run = [](bool thinkTimes) {
+    Field f(Field::Types{{"spheres", "Spheres"}, {"others", "Others"}});
+    f.set("/sys/server/spades", "thinkTimes", thinkTimes);
+    f.run(200);
+    std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
+    std::string text;
+    std::getline(log, text);
+    int informed = 0;
+    for (; std::getline(log, text); ++informed) REQUIRE(text == "K3");
+    REQUIRE((thinkTimes ? informed >= 10 : informed == 0));
+    REQUIRE(f.linesWith("(drive").size() == 14);
+    return f.listener->lines;
+  };
+  const auto lines = run(false);
+  for (int i = 0; i < 3; ++i) REQUIRE(run(true) == lines);
+}
+
+TEST_CASE("An agent that does not answer K is lost, at the step of its next act") {
+  Field f(Field::Types{{"mute", "Mute mute 1"}});
+  f.set("/sys/server/spades", "thinkTimes", true);
+  f.set("/sys/server/spades", "mostThought", 5.0);
+  f.run(60);
+  CHECK(f.linesWith("(create)").size() == 1);
+  CHECK_THAT(f.host.text, Catch::Contains("agent 0 (mute) is lost at step 44: it does not answer K for more than 5 s"));
+}
+
 TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
   Field f(Field::Types{{"good", "Good"},
                        {"crashes", "Bad crash 2"},
