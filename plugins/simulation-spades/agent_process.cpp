@@ -107,14 +107,26 @@ void AgentProcess::kill() {
 }
 
 void AgentProcess::send(std::string_view message) {
-  if (beginsCycle(message)) cpuAtBegin_ = cpuSeconds();
+  if (beginsCycle(message)) {
+    cpuAtBegin_ = cpuSeconds();
+    if (counter_) countAtBegin_ = counter_->count();
+  }
   pipes_->send(message);
 }
 
 std::optional<AgentLink::Message> AgentProcess::receive() {
   const auto text = pipes_->receive();
   if (!text) return std::nullopt;
-  return Message{std::string(*text), cpuSeconds() - cpuAtBegin_};
+  return Message{std::string(*text), cpuSeconds() - cpuAtBegin_, counter_ ? counter_->count() - countAtBegin_ : 0};
+}
+
+std::string AgentProcess::countInstructions() {
+  try {
+    if (!counter_) counter_ = std::make_unique<InstructionCounter>(pid_);
+    return {};
+  } catch (const Error& e) {
+    return e.what();
+  }
 }
 
 void AgentProcess::addDescriptors(std::vector<pollfd>& out) const {

@@ -10,6 +10,7 @@
 #include "agent_database.h"
 #include "agent_link.h"
 #include "frame_stream.h"
+#include "instruction_counter.h"
 
 namespace spark::spades {
 
@@ -26,6 +27,7 @@ class AgentProcess final : public AgentLink {
   void send(std::string_view message) override;
   void poll() override { pipes_->poll(); }
   std::optional<Message> receive() override;
+  std::string countInstructions() override;
   const std::string& lost() const override { return pipes_->lost(); }
   bool ended() override;
   void addDescriptors(std::vector<pollfd>& out) const override;
@@ -36,7 +38,8 @@ class AgentProcess final : public AgentLink {
   /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
   double cpuSeconds() const;
   pid_t pid_ = -1;
-  double cpuAtBegin_ = 0;
+  double cpuAtBegin_ = 0, countAtBegin_ = 0;
+  std::unique_ptr<InstructionCounter> counter_;  ///< nullptr: instructions are not counted
   std::unique_ptr<FrameStream> pipes_;
 };
 

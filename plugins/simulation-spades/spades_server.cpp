@@ -151,6 +151,9 @@ void SpadesServer::queueAgents(const std::string& type, int count) {
     throw Error(fmt::format("{}: expected an agent type of the database '{}' ({}), found '{}'", path(), database_,
                             names, type));
   }
+  if (const auto known = types_.find(type); known != types_.end() && modelOf(known->second.timer).instructions)
+    if (const std::string lacks = spades::InstructionCounter::lacks(); !lacks.empty())
+      throw Error(fmt::format("{}: no agents of type '{}': {}", path(), type, lacks));
   if (count < 0 || count > 1000) throw Error(fmt::format("expected 0 to 1000 agents, found {}", count));
   queue_.emplace_back(type, count);
 }
@@ -200,6 +203,11 @@ void SpadesServer::startAgent(const std::string& type) {
   } else {
     throw Error("no communication server has this type, nor the database of the host");
   }
+  if (modelOf(timer).instructions)
+    if (const std::string lacks = link->countInstructions(); !lacks.empty()) {
+      link->send("X");
+      throw Error(lacks);
+    }
   agents_.push_back(std::make_unique<Agent>(*this, started_, type, timer, std::move(link)));
   ++started_;
   agents_.back()->link->send("D");
@@ -262,6 +270,11 @@ void SpadesServer::poll() {
   removeLost();
 }
 
+spades::ThinkModel SpadesServer::modelOf(const std::string& timer) const {
+  const auto named = spades::readTimer(timer);
+  return named ? *named : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
+}
+
 spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
   return a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
 }
@@ -274,7 +287,7 @@ void SpadesServer::exchange(Agent& a) {
     const auto message = a.link->receive();
     if (!message) break;
     heard_ = true;
-    const Time thought = model.thought(message->cpuSeconds);
+    const Time thought = model.thought(message->cpuSeconds, message->instructions);
     switch (a.mind.take(message->text)) {
       case AgentMind::Result::question:
         a.link->send(fmt::format("C{}", thought));
@@ -309,10 +322,13 @@ void SpadesServer::exchange(Agent& a) {
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
   if (a.closed) return;
-  const auto message = a.mind.next(now(), modelOf(a).least());
+  const spades::ThinkModel model = modelOf(a);
+  const auto message = a.mind.next(now(), model.least());
   if (!message) return;
+  if (model.instructions)  // its think time may be another one since it was started
+    if (const std::string lacks = a.link->countInstructions(); !lacks.empty()) a.lose(lacks);
   a.began = Clock::now();
-  a.link->send(*message);
+  if (a.lost.empty()) a.link->send(*message);
 }
 
 /// Passes the acts that take effect now to the consumer.

@@ -53,6 +53,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
   spades::ThinkModel modelOf(const Agent& agent) const;
+  spades::ThinkModel modelOf(const std::string& timer) const;
   void exchange(Agent& agent);
   void deliver(Agent& agent);
   void feed(Agent& agent);

@@ -184,8 +184,16 @@ TEST_CASE("timers of the database: fixed and measured") {
   REQUIRE(jiffies.least() == 1);
   REQUIRE(jiffies.thought(0) == 1);
   REQUIRE(jiffies.thought(0.0021) == 2);
+  REQUIRE(readTimer("perfctr_instr 2000")->thought(0.0021) == 2);
+  REQUIRE_FALSE(readTimer("perfctr_instr 2000")->instructions);
+  const ThinkModel instructions = *readTimer("instructions 1000000");
+  REQUIRE(instructions.least() == 1);
+  REQUIRE(instructions.thought(99, 0) == 1);
+  REQUIRE(instructions.thought(99, 1e6) == 1);
+  REQUIRE(instructions.thought(0, 1.1e6) == 2);
+  REQUIRE(instructions.thought(0, 1e300) == 1000000000);
   REQUIRE_FALSE(readTimer("default"));
   REQUIRE_FALSE(readTimer(""));
-  for (const char* bad : {"fixed", "fixed -1", "jiffies 0", "sundial 3", "fixed 3x"})
+  for (const char* bad : {"fixed", "fixed -1", "jiffies 0", "instructions 0", "instructions", "sundial 3", "fixed 3x"})
     REQUIRE_THROWS_WITH(readTimer(bad), Catch::Contains(bad));
 }

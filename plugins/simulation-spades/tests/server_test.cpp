@@ -5,6 +5,7 @@
 #include <fstream>
 #include <thread>
 
+#include "../instruction_counter.h"
 #include "api/net.h"
 #include "api/phases.h"
 #include "temporary_folder.h"
@@ -59,6 +60,7 @@ struct Field {
   /// `types`: name and arguments of the test agent, for each a type.
   using Types = std::vector<std::pair<std::string, std::string>>;
   explicit Field(const Types& types, const std::string& timer = "fixed 3") {
+    std::signal(SIGPIPE, SIG_IGN);  // as hosts do: programs end while they are written to
     kernel.registerClass<Listener>();
     for (const char* plugin : {"simulation", "simulation-spades"}) kernel.plugins().use(plugin);
     kernel.create("Simulation", "/sys/server/simulation");
@@ -199,6 +201,40 @@ TEST_CASE("Who thinks longer acts later, and all think at the same time") {
   f.run(30);
   REQUIRE(f.linesWith("0 (create)") == std::vector<std::string>{"22: 0 (create)"});
   REQUIRE(f.linesWith("1 (create)") == std::vector<std::string>{"24: 1 (create)"});
+}
+
+TEST_CASE("Think time in instructions, or a start that is refused in one sentence") {
+  const std::string lacks = spades::InstructionCounter::lacks();
+  const auto field = [](const char* timer) { return Field(Field::Types{{"thinks", "Thinks"}}, timer); };
+  if (!lacks.empty()) {
+    REQUIRE_THROWS_WITH(field("instructions 1000000000"),
+                        Catch::Contains("/sys/server/spades: no agents of type 'thinks': " + lacks));
+    return;
+  }
+  Field few(Field::Types{{"thinks", "Thinks"}}, "instructions 1000000000");
+  few.run(30);
+  REQUIRE(few.linesWith("0 (create)") == std::vector<std::string>{"22: 0 (create)"});
+  Field many(Field::Types{{"thinks", "Thinks"}}, "instructions 1");
+  many.run(100);
+  REQUIRE(many.linesWith("0 (create)").empty());
+}
+
+TEST_CASE("Think time that becomes one in instructions later is refused at the start, or the agent is lost") {
+  const std::string lacks = spades::InstructionCounter::lacks();
+  Field f(Field::Types{{"thinks", "Thinks"}}, "default");
+  SECTION("before the start") {
+    f.kernel.create("InstructionThinkTime", "/sys/server/spades/think");
+    f.run(30);
+    if (!lacks.empty())
+      CHECK_THAT(f.host.text, Catch::Contains("no more agents of type 'thinks' are started: " + lacks));
+  }
+  SECTION("after it") {
+    f.run(5);
+    f.kernel.create("InstructionThinkTime", "/sys/server/spades/think");
+    f.run(40);
+    if (!lacks.empty()) CHECK_THAT(f.host.text, Catch::Contains("agent 0 (thinks) is lost at step 22: " + lacks));
+  }
+  CHECK(f.linesWith("0 (create)").size() == (lacks.empty() ? 1 : 0));
 }
 
 TEST_CASE("A database that cannot be read says where and what") {
