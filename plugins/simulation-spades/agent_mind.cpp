@@ -77,6 +77,7 @@ AgentMind::Result AgentMind::take(std::string_view message) {
 void AgentMind::end(Time thought, std::vector<Act>& acts) {
   thinking_ = false;
   ended_ = began_ + std::max(thought, least_);
+  thoughts_.add(ended_ - began_);
   for (std::string& data : acts_) acts.push_back({ended_ + latencies_.act, std::move(data)});
   acts_.clear();
   for (const Time t : requests_) pending_.push_back({t, -1, {}});

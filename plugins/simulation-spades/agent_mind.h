@@ -31,6 +31,8 @@
 #include <string_view>
 #include <vector>
 
+#include "recent_thoughts.h"
+
 namespace spark::spades {
 
 /// Simulated time [steps].
@@ -83,6 +85,8 @@ class AgentMind {
   Time began() const { return began_; }
   /// Until it answers, the world must not execute the step that begins at this time; kNever: no limit.
   Time horizon() const;
+  /// How long it thought in its last cycles.
+  const RecentThoughts& thoughts() const { return thoughts_; }
   /// Sensations that were dropped because the agent thought for too long.
   std::int64_t dropped() const { return dropped_; }
 
@@ -100,6 +104,7 @@ class AgentMind {
   bool ready_ = false, thinking_ = false, informed_ = false;
   Time began_ = 0, ended_ = 0, least_ = 0;
   std::int64_t dropped_ = 0;
+  RecentThoughts thoughts_;
 };
 
 }  // namespace spark::spades

@@ -77,6 +77,7 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
   d.doc("Starts agents and exchanges messages with them in simulated time: latencies, think times, causality.");
   d.implements<IInputSource>();
   d.implements<IInputGate>();
+  d.implements<IAgentTimes>();
   d.link(&S::thinkTime_, Child<ThinkTime>());
   d.link(&S::simulation_, At<ISimulation>());
   d.link(&S::tape_, At<IInputTape>());
@@ -363,6 +364,15 @@ bool SpadesServer::ready(bool) {
   if (playing() || (stage_ == Stage::queued && queue_.empty())) return true;  // without agents it holds nothing
   return stage_ == Stage::running &&
          std::all_of(agents_.begin(), agents_.end(), [this](const auto& a) { return a->mind.horizon() > now(); });
+}
+
+std::optional<AgentTimes> SpadesServer::times(const IConnection& connection) const {
+  const auto is = [&connection](const auto& a) { return a.get() == &connection; };
+  const auto agent = std::find_if(agents_.begin(), agents_.end(), is);
+  if (agent == agents_.end()) return std::nullopt;
+  const AgentMind& mind = (*agent)->mind;
+  return AgentTimes{mind.thoughts().last(), mind.thoughts().mean(), static_cast<double>(latencies_.sense),
+                    static_cast<double>(latencies_.act), mind.dropped()};
 }
 
 bool SpadesServer::wait(double seconds) {

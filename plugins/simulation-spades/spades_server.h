@@ -5,11 +5,13 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "agent_database.h"
 #include "agent_mind.h"
+#include "api/agents.h"
 #include "api/inputs.h"
 #include "api/net.h"
 #include "api/phases.h"
@@ -22,7 +24,7 @@ namespace spark {
 /// At /sys/server/spades; a child is a ThinkTime. Starts the queued agents, passes percepts of its consumer to them as
 /// sensations and their acts to the consumer, each at its simulated time, and keeps the world from running ahead of
 /// acts that may still come. Simulation thread.
-class SpadesServer : public Node, public IInputSource, public IInputGate {
+class SpadesServer : public Node, public IInputSource, public IInputGate, public IAgentTimes {
   SPARK_CLASS(SpadesServer, Node)
  public:
   static constexpr const char* kPath = "/sys/server/spades";
@@ -37,6 +39,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate {
   void poll() override;
   bool wait(double seconds) override;
   bool ready(bool lockstep) override;
+  std::optional<AgentTimes> times(const IConnection& connection) const override;
 
  protected:
   void onUnlink() override;

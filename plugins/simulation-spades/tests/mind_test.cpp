@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "../agent_mind.h"
 #include "../think_time.h"
@@ -158,6 +159,25 @@ TEST_CASE("the order of messages does not depend on when the agent answers K") {
   const auto told = run(0);
   REQUIRE(told[1] == "K15");
   for (const Time after : {1, 7, 19, 100}) REQUIRE(run(after) == told);
+}
+
+TEST_CASE("the last thoughts of an agent and their mean") {
+  RecentThoughts thoughts;
+  REQUIRE(std::isnan(thoughts.last()));
+  REQUIRE(std::isnan(thoughts.mean()));
+  thoughts.add(3);
+  thoughts.add(4);
+  REQUIRE(thoughts.last() == 4);
+  REQUIRE(thoughts.mean() == 3.5);
+  for (int i = 0; i < 31; ++i) thoughts.add(2);
+  REQUIRE(thoughts.mean() == (4 + 31 * 2) / 32.0);
+  Talk t;
+  t.mind.sense(1, "");
+  REQUIRE(t.at(11));
+  REQUIRE(std::isnan(t.mind.thoughts().last()));
+  REQUIRE(t.mind.take("D") == Result::done);
+  t.mind.end(1, t.acts);  // less than the least is the least
+  REQUIRE(t.mind.thoughts().last() == 3);
 }
 
 TEST_CASE("messages at the wrong time are ignored") {

@@ -1,11 +1,13 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <thread>
 
 #include "../instruction_counter.h"
+#include "api/agents.h"
 #include "api/net.h"
 #include "api/phases.h"
 #include "temporary_folder.h"
@@ -139,6 +141,27 @@ TEST_CASE("An agent that does not answer K is lost, at the step of its next act"
   f.run(60);
   CHECK(f.linesWith("(create)").size() == 1);
   CHECK_THAT(f.host.text, Catch::Contains("agent 0 (mute) is lost at step 44: it does not answer K for more than 5 s"));
+}
+
+TEST_CASE("The server has the think times and latencies of its agents, and of no other connection") {
+  Field f(Field::Types{{"spheres", "Spheres"}, {"others", "Others"}});
+  f.set("/sys/server/spades", "actLatency", 7);
+  f.run(5);
+  const auto& times = f.kernel.root().require<IAgentTimes>("/sys/server/spades");
+  REQUIRE(f.listener->agents.size() == 2);
+  IConnection& agent = *f.listener->agents[1];
+  REQUIRE(std::isnan(times.times(agent)->last));
+  f.run(60);
+  const auto now = times.times(agent);
+  REQUIRE(now);
+  CHECK(now->last == 3);
+  CHECK(now->mean == 3);
+  CHECK(now->senseLatency == 10);
+  CHECK(now->actLatency == 7);
+  CHECK(now->dropped == 0);
+  Field other(Field::Types{{"spheres", "Spheres"}});
+  other.run(5);
+  CHECK_FALSE(times.times(*other.listener->agents[0]));
 }
 
 TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
