@@ -148,7 +148,7 @@ function spades(t)
   local database = option{ name = "agentDatabase", default = "", doc = "XML file that says which programs are agents." }
   local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: none." }
   local think    = option{ name = "thinkTime", default = "FixedThinkTime",
-                           doc = "How long agents think: FixedThinkTime, or CpuThinkTime, which measures it." }
+                           doc = "How long agents think: FixedThinkTime, or measured: CpuThinkTime, InstructionThinkTime." }
   local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
   local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
   local token    = option{ name = "commToken", default = "", doc = "What they must know; empty: nothing." }

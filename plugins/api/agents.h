@@ -4,6 +4,8 @@
 /// the services of game control.
 
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "api/net.h"
 #include "api/phases.h"
@@ -164,6 +166,25 @@ class IReturningAgents {
   virtual bool returns(std::uint64_t id) const = 0;
 };
 
+/// How long an agent thinks in simulated time, and its latencies.
+struct AgentTimes {
+  double last = 0;           ///< its last thought [steps]; NaN before the first
+  double mean = 0;           ///< mean of its recent thoughts [steps]; NaN before the first
+  double senseLatency = 0;   ///< from sensing to the arrival of the sensation [steps]
+  double actLatency = 0;     ///< from the end of a thought until its acts take effect [steps]
+  std::int64_t dropped = 0;  ///< sensations that it did not get because it thought for too long
+};
+
+/// Lets agents think in simulated time. Offered by the port of their connections.
+class IAgentTimes {
+ public:
+  SPARK_INTERFACE(IAgentTimes, 1);
+  virtual ~IAgentTimes() = default;
+  /// The times of the agent behind a connection; nullopt: the connection is not one of this port. Simulation thread,
+  /// between cycles.
+  virtual std::optional<AgentTimes> times(const IConnection& connection) const = 0;
+};
+
 /// Logs the mistakes of agents. Offered by game control.
 class IRemarks {
  public:
@@ -278,7 +299,7 @@ class Behavior : public Node {
 /// Game control: connects agents to the simulation. At /sys/server/gamecontrol.
 class IGameControl {
  public:
-  SPARK_INTERFACE(IGameControl, 3);
+  SPARK_INTERFACE(IGameControl, 4);
   static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
   /// The agents, sorted by number. Valid until an agent is added or removed.
@@ -298,6 +319,9 @@ class IGameControl {
   /// Wall time from sending percepts to the agent's next message [s], smoothed over some 16 messages. NaN when it is
   /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
+  /// The agent's connection; nullptr: it runs inside the host, its client has left, or it is no agent. Valid until the
+  /// next cycle.
+  virtual IConnection* connection(const AgentAspect& agent) const = 0;
   /// For a snapshot that is restored: all agents leave the scene at once, as control aspects see it. Clients
   /// stay connected until the state of game control is loaded.
   virtual void withdrawAgents() = 0;

@@ -465,6 +465,11 @@ double GameControl::latency(const AgentAspect& agent) const {
   return p ? p->latency() : std::numeric_limits<double>::quiet_NaN();
 }
 
+IConnection* GameControl::connection(const AgentAspect& agent) const {
+  const Participant* p = participantOf(agent);
+  return p ? p->connection() : nullptr;
+}
+
 void GameControl::agentsChanged() {
   agentsTree_.lookAgain();
   if (auto* server = kernel().root().find<ISceneServer>()) server->markModified();

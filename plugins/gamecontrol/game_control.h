@@ -30,6 +30,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   int agentsSeen() const override { return agentsSeen_; }
   const Predicates* percepts(const AgentAspect& agent) const override;
   double latency(const AgentAspect& agent) const override;
+  IConnection* connection(const AgentAspect& agent) const override;
   void withdrawAgents() override;
   void restoreAgent(Node& parent, const std::string& name, int number) override;
   bool remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) override;

@@ -10,6 +10,21 @@
 
 namespace spark::web {
 
+namespace {
+void writeTimes(JsonWriter& json, const AgentTimes& times) {
+  const auto steps = [&json](const char* name, double value) {
+    json.key(name);
+    std::isfinite(value) ? json.fixed(value, 2) : json.null();
+  };
+  json.key("thinking").beginObject();
+  steps("last", times.last);
+  steps("mean", times.mean);
+  steps("senseLatency", times.senseLatency);
+  steps("actLatency", times.actLatency);
+  json.member("dropped", times.dropped).endObject();
+}
+}  // namespace
+
 std::string StatusReport::make(int spectators) {
   const auto* clock = kernel_.root().find<ISimulation>();
   const double time = clock ? clock->time() : 0;
@@ -55,6 +70,9 @@ void StatusReport::writeAgents(JsonWriter& json) const {
     json.beginObject().member("path", agent.path).member("team", agent.identity ? agent.identity->team() : "");
     json.member("number", agent.identity ? agent.identity->number() : 0).key("latency");
     std::isfinite(latency) ? json.fixed(latency * 1000, 2) : json.null();
+    IConnection* const connection = control->connection(*agent.aspect);
+    const auto* const port = connection ? connection->port().as<IAgentTimes>().object : nullptr;
+    if (const auto times = port ? port->times(*connection) : std::nullopt) writeTimes(json, *times);
     json.endObject();
   }
   json.endArray();

@@ -22,10 +22,13 @@ class AgentLink {
   /// A message of the agent.
   struct Message {
     std::string text;
-    double cpuSeconds = 0;  ///< CPU time since the last S or T was sent to it
+    double cpuSeconds = 0;    ///< CPU time since the last S or T was sent to it
+    double instructions = 0;  ///< retired since then; 0 before countInstructions()
   };
   /// The next message that has come.
   virtual std::optional<Message> receive() = 0;
+  /// Counts instructions from now on. Returns why it cannot, as one clause; "": it does.
+  virtual std::string countInstructions() = 0;
   /// Why nothing more will come; "": the agent is there.
   virtual const std::string& lost() const = 0;
   /// False while it cannot be reached, though it is not lost.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "spark/assert.h"
+
 namespace spark::spades {
 
 namespace {
@@ -16,21 +18,22 @@ std::optional<Time> timeIn(std::string_view text) {
   if (error != std::errc() || end == text.data()) return std::nullopt;
   return t;
 }
+
+/// The earliest message; among equals the one that was queued first.
+auto firstDue(auto& pending) {
+  return std::min_element(pending.begin(), pending.end(), [](const auto& a, const auto& b) { return a.due < b.due; });
+}
 }  // namespace
 
 void AgentMind::sense(Time sent, std::string data) {
   pending_.push_back({sent + latencies_.sense, sent, std::move(data)});
 }
 
-/// The earliest message; among equals the one that was queued first.
-std::deque<AgentMind::Pending>::iterator AgentMind::firstDue() {
-  return std::min_element(pending_.begin(), pending_.end(),
-                          [](const Pending& a, const Pending& b) { return a.due < b.due; });
-}
-
 std::optional<std::string> AgentMind::next(Time now, Time least) {
   if (!ready_ || thinking_) return std::nullopt;
-  for (auto first = firstDue(); first != pending_.end(); first = firstDue()) {
+  least_ = least;
+  if (informed_) return std::nullopt;
+  for (auto first = firstDue(pending_); first != pending_.end(); first = firstDue(pending_)) {
     const Time at = std::max(first->due, ended_);
     if (at > now) return std::nullopt;
     const Pending p = std::move(*first);
@@ -41,7 +44,6 @@ std::optional<std::string> AgentMind::next(Time now, Time least) {
     }
     thinking_ = true;
     began_ = at;
-    least_ = least;
     return p.sent < 0 ? fmt::format("T{}", p.due) : fmt::format("S{} {} {}", p.sent, at, p.data);
   }
   return std::nullopt;
@@ -62,7 +64,9 @@ AgentMind::Result AgentMind::take(std::string_view message) {
     case 'C':
       return thinking_ ? Result::question : Result::nothing;
     case 'D':
-      return thinking_ ? Result::done : Result::nothing;  // some answer D to K
+      if (thinking_) return Result::done;
+      informed_ = false;
+      return Result::nothing;
     case 'X':
       return Result::exit;
     default:
@@ -78,6 +82,7 @@ void AgentMind::end(Time thought, std::vector<Act>& acts) {
     return;
   }
   ended_ = began_ + std::max(thought, least_);
+  thoughts_.add(ended_ - began_);
   for (std::string& data : acts_) acts.push_back({ended_ + latencies_.act, std::move(data)});
   acts_.clear();
   for (const Time t : requests_) pending_.push_back({t, -1, {}});
@@ -88,6 +93,19 @@ void AgentMind::forget() {
   pending_.clear();
   ended_ = 0;
   stale_ = thinking_;
+}
+
+std::string AgentMind::inform() {
+  SPARK_ASSERT(!thinking_);
+  informed_ = true;
+  return fmt::format("K{}", ended_ - began_);
+}
+
+Time AgentMind::horizon() const {
+  if (thinking_) return stale_ ? 0 : began_ + least_ + latencies_.act;
+  // What is pending begins a cycle at the time at which it is due, even if the agent answers later.
+  if (!informed_ || pending_.empty()) return kNever;
+  return std::max(firstDue(pending_)->due, ended_) + least_ + latencies_.act;
 }
 
 }  // namespace spark::spades

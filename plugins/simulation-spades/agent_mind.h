@@ -13,6 +13,10 @@
 /// What comes while it thinks waits for the end of the cycle. A time notification names the time that was requested, a
 /// sensation that of its arrival.
 ///
+/// After a cycle the agent may be informed how long it has thought (K). That begins no cycle, but it must answer D to
+/// it as agents of the time do. Such agents keep one message of what they read, so the next one must not follow K
+/// before they have read it; and only an answer shows that they have, in an order that is the same in every run.
+///
 /// The world may run on while the agent thinks, until the first time at which an act of it could take effect: at least
 /// `least` think time, and the latency, after the beginning of the cycle. So agents think at the same time as one
 /// another and as the world, and no result depends on when their messages come.
@@ -26,6 +30,8 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "recent_thoughts.h"
 
 namespace spark::spades {
 
@@ -67,16 +73,23 @@ class AgentMind {
   Result take(std::string_view message);
   /// Ends the cycle after `thought` steps; appends its acts.
   void end(Time thought, std::vector<Act>& acts);
+  /// The message that informs the agent of the think time of the cycle that ended last. Until it answers D, next() is
+  /// nullopt. Not while thinking().
+  std::string inform();
 
   /// Forgets what is on its way to the agent, and of what it thinks now nothing will come: time goes on elsewhere.
   void forget();
 
   bool ready() const { return ready_; }
   bool thinking() const { return thinking_; }
+  /// True from inform() until the agent answers.
+  bool informed() const { return informed_; }
   /// When the cycle began. Only while thinking().
   Time began() const { return began_; }
   /// Until it answers, the world must not execute the step that begins at this time; kNever: no limit.
-  Time horizon() const { return !thinking_ ? kNever : stale_ ? 0 : began_ + least_ + latencies_.act; }
+  Time horizon() const;
+  /// How long it thought in its last cycles.
+  const RecentThoughts& thoughts() const { return thoughts_; }
   /// Sensations that were dropped because the agent thought for too long.
   std::int64_t dropped() const { return dropped_; }
 
@@ -86,16 +99,16 @@ class AgentMind {
     Time sent;  ///< of a sensation; -1: a time notification
     std::string data;
   };
-  std::deque<Pending>::iterator firstDue();
 
   const Latencies& latencies_;
   std::deque<Pending> pending_;  ///< in the order of insertion
   std::vector<std::string> acts_;
   std::vector<Time> requests_;
-  bool ready_ = false, thinking_ = false;
+  bool ready_ = false, thinking_ = false, informed_ = false;
   bool stale_ = false;  ///< forget() was called since it began to think
   Time began_ = 0, ended_ = 0, least_ = 0;
   std::int64_t dropped_ = 0;
+  RecentThoughts thoughts_;
 };
 
 }  // namespace spark::spades

@@ -66,14 +66,14 @@ AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
 }
 
 void AgentProcess::send(std::string_view message) {
-  if (beginsCycle(message)) cpuAtBegin_ = program_->cpuSeconds();
+  if (beginsCycle(message)) program_->beginThought();
   pipes_->send(message);
 }
 
 std::optional<AgentLink::Message> AgentProcess::receive() {
   const auto text = pipes_->receive();
   if (!text) return std::nullopt;
-  return Message{std::string(*text), program_->cpuSeconds() - cpuAtBegin_};
+  return program_->measured(std::string(*text));
 }
 
 }  // namespace spark::spades

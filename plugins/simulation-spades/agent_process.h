@@ -26,6 +26,7 @@ class AgentProcess final : public AgentLink {
   void send(std::string_view message) override;
   void poll() override { pipes_->poll(); }
   std::optional<Message> receive() override;
+  std::string countInstructions() override { return program_->countInstructions(); }
   const std::string& lost() const override { return pipes_->lost(); }
   bool ended() override { return program_->ended(); }
   void addDescriptors(std::vector<pollfd>& out) const override { pipes_->addDescriptors(out); }
@@ -33,7 +34,6 @@ class AgentProcess final : public AgentLink {
  private:
   std::unique_ptr<AgentProgram> program_;
   std::unique_ptr<FrameStream> pipes_;
-  double cpuAtBegin_ = 0;
 };
 
 }  // namespace spark::spades

@@ -80,6 +80,24 @@ bool AgentProgram::ended() const {
   return ::waitid(P_PID, static_cast<id_t>(pid_), &info, WEXITED | WNOHANG | WNOWAIT) == 0 && info.si_pid == pid_;
 }
 
+std::string AgentProgram::countInstructions() {
+  try {
+    if (!counter_) counter_ = std::make_unique<InstructionCounter>(pid_);
+    return {};
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+void AgentProgram::beginThought() {
+  cpuAtBegin_ = cpuSeconds();
+  if (counter_) countAtBegin_ = counter_->count();
+}
+
+AgentLink::Message AgentProgram::measured(std::string text) const {
+  return {std::move(text), cpuSeconds() - cpuAtBegin_, counter_ ? counter_->count() - countAtBegin_ : 0};
+}
+
 double AgentProgram::cpuSeconds() const {
   clockid_t clock;
   timespec t;

@@ -4,10 +4,13 @@
 
 #include <sys/types.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "agent_database.h"
+#include "agent_link.h"
+#include "instruction_counter.h"
 
 namespace spark::spades {
 
@@ -28,11 +31,19 @@ class AgentProgram {
 
   /// True once it has ended. Does not wait.
   bool ended() const;
-  /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
-  double cpuSeconds() const;
+  /// See AgentLink.
+  std::string countInstructions();
+  /// A thought begins now.
+  void beginThought();
+  /// A message of the program, with what the thought has taken so far.
+  AgentLink::Message measured(std::string text) const;
 
  private:
+  /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
+  double cpuSeconds() const;
   pid_t pid_ = -1;
+  double cpuAtBegin_ = 0, countAtBegin_ = 0;
+  std::unique_ptr<InstructionCounter> counter_;  ///< nullptr: instructions are not counted
 };
 
 }  // namespace spark::spades

@@ -38,6 +38,10 @@ class RemoteAgent final : public AgentLink {
     messages_.pop_front();
     return m;
   }
+  std::string countInstructions() override {
+    return "communication servers measure CPU time, not instructions; use CpuThinkTime, or the timer 'jiffies', "
+           "instead";
+  }
   const std::string& lost() const override { return lost_; }
   bool reachable() const override { return server_.connected(); }
   bool ended() override { return true; }  // its server ends it

@@ -84,6 +84,7 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
   d.implements<IInputSource>();
   d.implements<IInputGate>();
   d.implements<IReturningAgents>();
+  d.implements<IAgentTimes>();
   d.link(&S::thinkTime_, Child<ThinkTime>());
   d.link(&S::simulation_, At<ISimulation>());
   d.link(&S::tape_, At<IInputTape>());
@@ -104,6 +105,10 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
       .unit("steps")
       .range(1, 10000)
       .doc("Time from the end of a thought until its acts take effect.");
+  d.property("thinkTimes", &S::thinkTimes_)
+      .doc(
+          "After each cycle the agent gets K<steps>, how long it has thought. It must answer D, as agents of the time "
+          "do.");
   d.property("mostThought", &S::mostThought_)
       .unit("s")
       .min(0.01)
@@ -156,6 +161,9 @@ void SpadesServer::queueAgents(const std::string& type, int count) {
     throw Error(fmt::format("{}: expected an agent type of the database '{}' ({}), found '{}'", path(), database_,
                             names, type));
   }
+  if (const auto known = types_.find(type); known != types_.end() && modelOf(known->second.timer).instructions)
+    if (const std::string lacks = spades::InstructionCounter::lacks(); !lacks.empty())
+      throw Error(fmt::format("{}: no agents of type '{}': {}", path(), type, lacks));
   if (count < 0 || count > 1000) throw Error(fmt::format("expected 0 to 1000 agents, found {}", count));
   queue_.emplace_back(type, count);
 }
@@ -206,6 +214,11 @@ void SpadesServer::startAgent(const std::string& type) {
   } else {
     throw Error("no communication server has this type, nor the database of the host");
   }
+  if (modelOf(timer).instructions)
+    if (const std::string lacks = link->countInstructions(); !lacks.empty()) {
+      link->send("X");
+      throw Error(lacks);
+    }
   agents_.push_back(std::make_unique<Agent>(*this, started_, type, timer, std::move(link)));
   ++started_;
   agents_.back()->link->send("D");
@@ -273,6 +286,11 @@ void SpadesServer::poll() {
   removeLost();
 }
 
+spades::ThinkModel SpadesServer::modelOf(const std::string& timer) const {
+  const auto named = spades::readTimer(timer);
+  return named ? *named : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
+}
+
 spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
   return a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
 }
@@ -285,7 +303,7 @@ void SpadesServer::exchange(Agent& a) {
     const auto message = a.link->receive();
     if (!message) break;
     heard_ = true;
-    const Time thought = model.thought(message->cpuSeconds);
+    const Time thought = model.thought(message->cpuSeconds, message->instructions);
     switch (a.mind.take(message->text)) {
       case AgentMind::Result::question:
         a.link->send(fmt::format("C{}", thought));
@@ -294,6 +312,10 @@ void SpadesServer::exchange(Agent& a) {
         acts_.clear();
         a.mind.end(thought, acts_);
         for (spades::Act& act : acts_) a.acts.push_back(std::move(act));
+        if (thinkTimes_) {
+          a.began = Clock::now();
+          a.link->send(a.mind.inform());
+        }
         break;
       case AgentMind::Result::exit:
         a.lose("it leaves");
@@ -305,18 +327,24 @@ void SpadesServer::exchange(Agent& a) {
   }
   if (!a.link->lost().empty()) a.lose(a.link->lost());
   if (!a.link->reachable()) a.began = Clock::now();  // it may have answered
-  const bool waitedFor = a.mind.thinking() || !a.mind.ready();
-  if (waitedFor && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
-    a.lose(fmt::format("it {} for more than {} s", a.mind.ready() ? "thinks" : "says nothing", mostThought_));
+  const char* const waits = !a.mind.ready()     ? "says nothing"
+                            : a.mind.thinking() ? "thinks"
+                            : a.mind.informed() ? "does not answer K"
+                                                : nullptr;
+  if (waits && std::chrono::duration<double>(Clock::now() - a.began).count() > mostThought_)
+    a.lose(fmt::format("it {} for more than {} s", waits, mostThought_));
 }
 
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
   if (a.closed) return;
-  const auto message = a.mind.next(now(), modelOf(a).least());
+  const spades::ThinkModel model = modelOf(a);
+  const auto message = a.mind.next(now(), model.least());
   if (!message) return;
+  if (model.instructions)  // its think time may be another one since it was started
+    if (const std::string lacks = a.link->countInstructions(); !lacks.empty()) a.lose(lacks);
   a.began = Clock::now();
-  a.link->send(*message);
+  if (a.lost.empty()) a.link->send(*message);
 }
 
 /// Passes the acts that take effect now to the consumer.
@@ -351,6 +379,15 @@ bool SpadesServer::ready(bool) {
   if (playing() || (stage_ == Stage::queued && queue_.empty())) return true;  // without agents it holds nothing
   return stage_ == Stage::running &&
          std::all_of(agents_.begin(), agents_.end(), [this](const auto& a) { return a->mind.horizon() > now(); });
+}
+
+std::optional<AgentTimes> SpadesServer::times(const IConnection& connection) const {
+  const auto is = [&connection](const auto& a) { return a.get() == &connection; };
+  const auto agent = std::find_if(agents_.begin(), agents_.end(), is);
+  if (agent == agents_.end()) return std::nullopt;
+  const AgentMind& mind = (*agent)->mind;
+  return AgentTimes{mind.thoughts().last(), mind.thoughts().mean(), static_cast<double>(latencies_.sense),
+                    static_cast<double>(latencies_.act), mind.dropped()};
 }
 
 bool SpadesServer::wait(double seconds) {

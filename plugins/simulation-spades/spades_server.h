@@ -5,6 +5,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,7 +24,7 @@ namespace spark {
 /// At /sys/server/spades; a child is a ThinkTime. Starts the queued agents, passes percepts of its consumer to them as
 /// sensations and their acts to the consumer, each at its simulated time, and keeps the world from running ahead of
 /// acts that may still come. Simulation thread.
-class SpadesServer : public Node, public IInputSource, public IInputGate, public IReturningAgents {
+class SpadesServer : public Node, public IInputSource, public IInputGate, public IReturningAgents, public IAgentTimes {
   SPARK_CLASS(SpadesServer, Node)
  public:
   static constexpr const char* kPath = "/sys/server/spades";
@@ -39,6 +40,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   bool wait(double seconds) override;
   bool ready(bool lockstep) override;
   bool returns(std::uint64_t) const override { return returns_; }
+  std::optional<AgentTimes> times(const IConnection& connection) const override;
 
  protected:
   void onUnlink() override;
@@ -58,6 +60,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
   spades::ThinkModel modelOf(const Agent& agent) const;
+  spades::ThinkModel modelOf(const std::string& timer) const;
   void exchange(Agent& agent);
   void deliver(Agent& agent);
   void feed(Agent& agent);
@@ -80,6 +83,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
 
   spades::Latencies latencies_;
   std::string database_, logs_, consumerPath_ = "/sys/server/gamecontrol";
+  bool thinkTimes_ = false;
   double mostThought_ = 10, shutdown_ = 2, away_ = 30;
   std::string address_ = "127.0.0.1", token_;
   int port_ = -1, commServers_ = 0;

@@ -69,8 +69,10 @@ void TcpAgent::send(std::string_view message) {
   } else if (message == "X") {
     connection_.reset();
     if (lost_.empty()) lost_ = "it was told to end";
+  } else if (message.starts_with('K')) {  // which an agent must answer
+    cycle_ = Cycle::done;
   } else if (message.starts_with('S')) {
-    cpuAtBegin_ = program_->cpuSeconds();
+    program_->beginThought();
     const std::string_view percepts = perceptsOf(message);
     const bool first = !std::exchange(begun_, true);
     cycle_ = first ? Cycle::first : percepts.empty() || !connection_ ? Cycle::done : Cycle::open;
@@ -110,18 +112,18 @@ void TcpAgent::keepMessages() {
 std::optional<AgentLink::Message> TcpAgent::receive() {
   if (asked_ && !ready_ && !messages_.empty()) {
     ready_ = true;
-    return message("I");
+    return program_->measured("I");
   }
   if (cycle_ == Cycle::done) {
     cycle_ = Cycle::none;
-    return message("D");
+    return program_->measured("D");
   }
   if (cycle_ == Cycle::none || messages_.empty()) return std::nullopt;
   const std::string text = std::move(messages_.front());
   messages_.pop_front();
   bytes_ -= text.size();
   if (cycle_ == Cycle::first || text.find(ends_) != text.npos) cycle_ = Cycle::done;
-  return message("A" + text);
+  return program_->measured("A" + text);
 }
 
 void TcpAgent::addDescriptors(std::vector<pollfd>& out) const {

@@ -32,6 +32,7 @@ class TcpAgent final : public AgentLink {
   void send(std::string_view message) override;
   void poll() override;
   std::optional<Message> receive() override;
+  std::string countInstructions() override { return program_->countInstructions(); }
   const std::string& lost() const override { return lost_.empty() && connection_ ? connection_->lost() : lost_; }
   bool ended() override { return program_->ended(); }
   void addDescriptors(std::vector<pollfd>& out) const override;
@@ -45,7 +46,6 @@ class TcpAgent final : public AgentLink {
   };
   void accept();
   void keepMessages();
-  Message message(std::string text) const { return {std::move(text), program_->cpuSeconds() - cpuAtBegin_}; }
 
   const std::string ends_;
   int listener_ = -1;
@@ -56,7 +56,6 @@ class TcpAgent final : public AgentLink {
   std::string lost_;
   bool asked_ = false, ready_ = false, begun_ = false;
   Cycle cycle_ = Cycle::none;
-  double cpuAtBegin_ = 0;
 };
 
 }  // namespace spark::spades

@@ -17,19 +17,23 @@ namespace spades {
 /// A number of steps for what an agent has used.
 struct ThinkModel {
   std::optional<Time> fixed = 0;  ///< always as many steps; nullopt: measured
-  double secondsPerStep = 0.01;   ///< CPU time of a step, measured
+  double perStep = 0.01;          ///< measured: CPU time of a step [s], or instructions of a step
+  bool instructions = false;      ///< measured: instructions count, not CPU time
 
   /// Shortest think time [steps]: before it no act can come.
   Time least() const { return fixed ? *fixed : 1; }
-  /// Steps for a CPU time [s].
-  Time thought(double cpuSeconds) const {
+  /// Steps for a CPU time [s] and a number of instructions.
+  Time thought(double cpuSeconds, double counted = 0) const {
     if (fixed) return *fixed;
-    return std::max<Time>(1, static_cast<Time>(std::ceil(std::min(cpuSeconds / secondsPerStep, 1e9))));
+    const double used = instructions ? counted : cpuSeconds;
+    return std::max<Time>(1, static_cast<Time>(std::ceil(std::min(used / perStep, 1e9))));
   }
 };
 
-/// The model that a timer of the agent database names: "fixed 3", "jiffies 2000" (CPU microseconds per step; the same
-/// for perfctr). nullopt for "" and "default". Throws Error for another text.
+/// The model that a timer of the agent database names: "fixed 3", "jiffies 2000" (CPU microseconds per step),
+/// "instructions 10000000" (per step). "perfctr 2000" and "perfctr_instr 2000" are the same as "jiffies 2000": what
+/// their numbers counted is not known, and a database should mean the same on each machine. nullopt for "" and
+/// "default". Throws Error for another text.
 std::optional<ThinkModel> readTimer(std::string_view timer);
 
 }  // namespace spades
@@ -78,6 +82,25 @@ class CpuThinkTime : public ThinkTime {
 
  private:
   double perStep_ = 0.01;
+};
+
+/// The instructions that the agent's program retired. They depend less on caches and on the clock of the processor than
+/// CPU time does, but on the processor's counters, which most virtual machines lack. They vary
+/// by little, not by nothing: it is not repeatable to the last bit.
+class InstructionThinkTime : public ThinkTime {
+  SPARK_CLASS(InstructionThinkTime, ThinkTime)
+ public:
+  static void describe(Description<InstructionThinkTime>& d) {
+    d.doc("A thought takes as many steps as the agent's program retired instructions, at least one.");
+    d.property("perStep", &InstructionThinkTime::perStep_)
+        .unit("instructions")
+        .range(1e3, 1e12)
+        .doc("Instructions of the agent that count as one step; a part of them counts as a whole one.");
+  }
+  spades::ThinkModel model() const override { return {std::nullopt, perStep_, true}; }
+
+ private:
+  double perStep_ = 1e7;
 };
 
 }  // namespace spark

@@ -21,7 +21,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Time now = 0;
   for (std::size_t at = 0; at < bytes.size(); ++now) {
     const std::size_t end = std::min(bytes.find('\n', at), bytes.size());
-    if (mind.take(bytes.substr(at, end - at)) == AgentMind::Result::done) mind.end(now % 7, acts);
+    if (mind.take(bytes.substr(at, end - at)) == AgentMind::Result::done) {
+      mind.end(now % 7, acts);
+      if (now % 3 == 0) (void)mind.inform();
+    }
     if (now % 5 == 0) mind.sense(now, "x");
     (void)mind.next(now, 1);
     at = end + 1;

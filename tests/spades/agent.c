@@ -1,7 +1,7 @@
 /* An agent for the middleware SPADES, written from the description of its messages alone: it reads from descriptor 3
  * and writes to descriptor 4, each message behind a length of four bytes, big-endian.
  *
- *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | fork]
+ *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | mute N | fork]
  *     agent tcp PORT [twice | flood | mute | leave]
  *
  * The second form is an agent of the plain loop: it connects to PORT, sends (scene) and answers the n-th percepts with
@@ -10,7 +10,8 @@
  *
  * Like the agents of 2004 it counts sensations: it creates its sphere at the first, joins its team at the second, and
  * plays from the third on: it asks for the think time so far, requests a time notification, drives towards the ball and
- * kicks it. The second argument is how it misbehaves, from sensation N on, or how many ms of CPU each thought takes. */
+ * kicks it. It prints and answers K. The second argument is how it misbehaves, from sensation N on, or how many ms of
+ * CPU each thought takes. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,24 +23,33 @@
 #include <sys/socket.h>
 
 static int in = 3, out = 4;
-static char message[65536];
+static char message[65536], bytes[65536];
+static size_t kept = 0; /* of `bytes`: only a message X is kept */
 
-static void readAll(char* to, size_t n) {
-  while (n > 0) {
-    ssize_t got = read(in, to, n);
+static size_t need(size_t n) {
+  while (kept < n) {
+    ssize_t got = read(in, bytes + kept, sizeof bytes - kept);
     if (got <= 0) exit(1);
-    to += got;
-    n -= (size_t)got;
+    kept += (size_t)got;
   }
+  return n;
 }
 
+/* Agents of the time kept one message of what they read, and lost others without a word. This one ends then. */
 static void receive(void) {
-  unsigned char prefix[4];
-  readAll((char*)prefix, 4);
+  const unsigned char* prefix = (const unsigned char*)bytes;
+  need(4);
   size_t n = (size_t)prefix[0] << 24 | (size_t)prefix[1] << 16 | (size_t)prefix[2] << 8 | prefix[3];
-  if (n >= sizeof message) exit(1);
-  readAll(message, n);
+  if (n + 4 > sizeof bytes) exit(1);
+  size_t end = need(n + 4);
+  memcpy(message, bytes + 4, n);
   message[n] = 0;
+  kept -= end;
+  memmove(bytes, bytes + end, kept);
+  if (kept > 4 && bytes[4] != 'X') {
+    fprintf(stderr, "two messages at once: %c and %c\n", message[0], bytes[4]);
+    exit(1);
+  }
 }
 
 static void sendText(const char* text) {
@@ -67,8 +77,8 @@ static void act(void) {
     return;
   }
   char text[128];
-  snprintf(text, sizeof text, "A(drive %.2f %.2f 0)%s", 60 * cos(angle * M_PI / 180),
-           60 * sin(angle * M_PI / 180), distance < 0.4 ? "(kick 10 60)" : "");
+  snprintf(text, sizeof text, "A(drive %.2f %.2f 0)%s", 60 * cos(angle * M_PI / 180), 60 * sin(angle * M_PI / 180),
+           distance < 0.4 ? "(kick 10 60)" : "");
   sendText(text);
 }
 
@@ -112,14 +122,19 @@ int main(int argc, char** argv) {
     receive();
     if (message[0] == 'D') sendText("I");
     if (message[0] == 'X') return 0;
+    if (message[0] == 'K') {
+      printf("%s\n", message);
+      fflush(stdout);
+      if (strcmp(way, "mute") != 0 || sensations < from) sendText("D");
+    }
     if (message[0] == 'T') {
-      sendText("A");  /* an empty act is legal */
+      sendText("A"); /* an empty act is legal */
       sendText("D");
     }
     if (message[0] != 'S') continue;
     const int n = ++sensations;
     if (from > 0 && n >= from) {
-      if (strcmp(way, "hang") == 0) continue;  /* no D */
+      if (strcmp(way, "hang") == 0) continue; /* no D */
       if (strcmp(way, "crash") == 0) abort();
       if (strcmp(way, "quit") == 0) return 0;
       if (strcmp(way, "garbage") == 0) {

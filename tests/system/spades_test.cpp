@@ -166,6 +166,23 @@ TEST_CASE("Teams made for plain TCP play under SPADES, in the host and under a c
   REQUIRE(result["stateHash"] == reference["stateHash"]);
 }
 
+TEST_CASE("Agents of a communication server are not started with think time in instructions, and it says why") {
+  OldMatch m;
+  m.timer = "default";
+  m.seconds = 1;
+  m.arguments = {"--set", "commPort=0", "--set", "commServers=1", "--set", "thinkTime=InstructionThinkTime"};
+  Process host(m.command());
+  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
+  Process server({program("sparkcomm"), "--port", port, "--database", m.database()});
+  const Json result = Json::parse(host.line());
+  REQUIRE(host.wait() == 0);
+  REQUIRE(server.wait() == 0);
+  CHECK(result["agentsSeen"] == 0);
+  CHECK_THAT(host.errors(),
+             Contains("no more agents of type 'blue' are started: communication servers measure CPU time, "
+                      "not instructions; use CpuThinkTime, or the timer 'jiffies', instead"));
+}
+
 TEST_CASE("A communication server that is killed takes its agents with it, and the match goes on") {
   OldMatch m;
   m.seconds = 600;

@@ -45,9 +45,41 @@ class TwoAgents : public Node, public IGameControl {
   int agentsSeen() const override { return 2; }
   const Predicates* percepts(const AgentAspect&) const override { return nullptr; }
   double latency(const AgentAspect& agent) const override { return &agent == all[0] ? 0.0125 : std::nan(""); }
+  IConnection* connection(const AgentAspect& agent) const override {
+    return agent.name() == "thinks" ? thinks : agent.name() == "begins" ? begins : nullptr;
+  }
   void withdrawAgents() override {}
   void restoreAgent(Node&, const std::string&, int) override {}
   std::vector<AgentAspect*> all;
+  IConnection *thinks = nullptr, *begins = nullptr;
+};
+
+class Line : public IConnection {
+ public:
+  explicit Line(Node& port) : port_(port) {}
+  std::uint64_t id() const override { return 1; }
+  const std::string& peer() const override { return name_; }
+  Node& port() override { return port_; }
+  bool send(std::string_view) override { return true; }
+  bool idle() const override { return true; }
+  double stalledSeconds() const override { return 0; }
+  void close(std::string_view) override {}
+
+ private:
+  Node& port_;
+  std::string name_ = "agent 0";
+};
+
+/// A port whose first connection has thought, and whose others have not.
+class Thinkers : public Node, public IAgentTimes {
+  SPARK_CLASS(Thinkers, Node)
+ public:
+  static void describe(Description<Thinkers>& d) { d.implements<IAgentTimes>(); }
+  std::optional<AgentTimes> times(const IConnection& connection) const override {
+    if (&connection == first) return AgentTimes{3, 2.25, 10, 9, 2};
+    return AgentTimes{std::nan(""), std::nan(""), 10, 9, 0};
+  }
+  const IConnection* first = nullptr;
 };
 
 struct SumoMatch : TestHost {
@@ -58,6 +90,7 @@ struct SumoMatch : TestHost {
     kernel.registerClass<SumoGame>();
     kernel.registerClass<Wrestler>();
     kernel.registerClass<TwoAgents>();
+    kernel.registerClass<Thinkers>();
   }
   SumoGame& game(std::vector<StatusEntry> entries) {
     auto& game = kernel.create<SumoGame>("SumoGame", "/usr/sumo");
@@ -106,4 +139,23 @@ TEST_CASE("team and number of an agent come from a node below it, at any depth")
   CHECK(match.status()["agents"] ==
         Json::parse(R"([{"path":"/usr/scene/one","team":"East \"1\"","number":4,"latency":12.5},
                         {"path":"/usr/scene/two","team":"","number":0,"latency":null}])"));
+}
+
+TEST_CASE("think times of an agent come from the port of its connection, if that has any") {
+  SumoMatch match;
+  auto& control = match.kernel.create<TwoAgents>("TwoAgents", "/sys/server/gamecontrol");
+  for (const char* name : {"inside", "thinks", "begins"})
+    control.all.push_back(&match.kernel.create<AgentAspect>("AgentAspect", std::string("/usr/scene/") + name));
+  auto& port = match.kernel.create<Thinkers>("Thinkers", "/sys/server/thinkers");
+  Line thinks(port), begins(port), plain(control);
+  control.thinks = &thinks;
+  control.begins = &begins;
+  port.first = &thinks;
+  const Json agents = match.status()["agents"];
+  CHECK_FALSE(agents[0].contains("thinking"));
+  CHECK(agents[1]["thinking"] == Json::parse(R"({"last":3,"mean":2.25,"senseLatency":10,"actLatency":9,"dropped":2})"));
+  CHECK(agents[2]["thinking"] ==
+        Json::parse(R"({"last":null,"mean":null,"senseLatency":10,"actLatency":9,"dropped":0})"));
+  control.begins = &plain;
+  CHECK_FALSE(match.status()["agents"][2].contains("thinking"));
 }

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "../agent_mind.h"
 #include "../think_time.h"
@@ -125,6 +126,76 @@ TEST_CASE("the order of messages does not depend on when the agent answers") {
   REQUIRE(run(32) == run(20));
 }
 
+TEST_CASE(
+    "after K the agent gets nothing until it answers D, and the world runs on to the first step that it could change") {
+  Talk t;
+  t.mind.sense(1, "a");
+  REQUIRE(t.at(11) == "S1 11 a");
+  t.done();
+  REQUIRE(t.mind.inform() == "K3");
+  REQUIRE(t.mind.informed());
+  REQUIRE_FALSE(t.mind.thinking());
+  REQUIRE(t.mind.horizon() == kNever);
+  t.mind.sense(21, "b");
+  REQUIRE(t.mind.horizon() == 31 + 3 + 10);
+  t.mind.take("A(late)");
+  t.mind.take("R25");
+  REQUIRE(t.mind.take("C") == Result::nothing);
+  REQUIRE_FALSE(t.at(31));
+  REQUIRE(t.mind.take("D") == Result::nothing);
+  REQUIRE_FALSE(t.mind.informed());
+  REQUIRE(t.at(40) == "S21 31 b");  // as if it had answered before
+  REQUIRE(t.mind.horizon() == 31 + 3 + 10);
+  t.done();
+  REQUIRE(t.acts.empty());
+  REQUIRE_FALSE(t.at(100));
+}
+
+TEST_CASE("the order of messages does not depend on when the agent answers K") {
+  const auto run = [](Time answersAfter) {
+    Talk t(15);
+    std::vector<std::string> told;
+    Time informedAt = kNever;
+    for (Time now = 0; now < 200; ++now) {
+      if (now % 20 == 1) t.mind.sense(now, "");
+      if (t.mind.informed() && (now - informedAt >= answersAfter || now >= t.mind.horizon())) t.mind.take("D");
+      if (const auto m = t.at(now)) {
+        told.push_back(*m);
+        if (told.size() % 3 == 0) t.mind.take(fmt::format("R{}", t.mind.began() + 4));
+        t.done();
+        told.push_back(t.mind.inform());
+        informedAt = now;
+      }
+      REQUIRE(t.mind.horizon() > now);
+    }
+    REQUIRE(told.size() >= 16);
+    told.resize(16);  // later ones may not be there yet
+    return told;
+  };
+  const auto told = run(0);
+  REQUIRE(told[1] == "K15");
+  for (const Time after : {1, 7, 19, 100}) REQUIRE(run(after) == told);
+}
+
+TEST_CASE("the last thoughts of an agent and their mean") {
+  RecentThoughts thoughts;
+  REQUIRE(std::isnan(thoughts.last()));
+  REQUIRE(std::isnan(thoughts.mean()));
+  thoughts.add(3);
+  thoughts.add(4);
+  REQUIRE(thoughts.last() == 4);
+  REQUIRE(thoughts.mean() == 3.5);
+  for (int i = 0; i < 31; ++i) thoughts.add(2);
+  REQUIRE(thoughts.mean() == (4 + 31 * 2) / 32.0);
+  Talk t;
+  t.mind.sense(1, "");
+  REQUIRE(t.at(11));
+  REQUIRE(std::isnan(t.mind.thoughts().last()));
+  REQUIRE(t.mind.take("D") == Result::done);
+  t.mind.end(1, t.acts);  // less than the least is the least
+  REQUIRE(t.mind.thoughts().last() == 3);
+}
+
 TEST_CASE("messages at the wrong time are ignored") {
   Talk t;
   REQUIRE(t.mind.take("D") == Result::nothing);
@@ -149,8 +220,16 @@ TEST_CASE("timers of the database: fixed and measured") {
   REQUIRE(jiffies.least() == 1);
   REQUIRE(jiffies.thought(0) == 1);
   REQUIRE(jiffies.thought(0.0021) == 2);
+  REQUIRE(readTimer("perfctr_instr 2000")->thought(0.0021) == 2);
+  REQUIRE_FALSE(readTimer("perfctr_instr 2000")->instructions);
+  const ThinkModel instructions = *readTimer("instructions 1000000");
+  REQUIRE(instructions.least() == 1);
+  REQUIRE(instructions.thought(99, 0) == 1);
+  REQUIRE(instructions.thought(99, 1e6) == 1);
+  REQUIRE(instructions.thought(0, 1.1e6) == 2);
+  REQUIRE(instructions.thought(0, 1e300) == 1000000000);
   REQUIRE_FALSE(readTimer("default"));
   REQUIRE_FALSE(readTimer(""));
-  for (const char* bad : {"fixed", "fixed -1", "jiffies 0", "sundial 3", "fixed 3x"})
+  for (const char* bad : {"fixed", "fixed -1", "jiffies 0", "instructions 0", "instructions", "sundial 3", "fixed 3x"})
     REQUIRE_THROWS_WITH(readTimer(bad), Catch::Contains(bad));
 }

@@ -1,10 +1,13 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <thread>
 
+#include "../instruction_counter.h"
+#include "api/agents.h"
 #include "api/net.h"
 #include "api/phases.h"
 #include "temporary_folder.h"
@@ -112,6 +115,54 @@ TEST_CASE("An agent in C creates, joins and plays, each act at its simulated tim
   REQUIRE(text == "Spheres plays");
 }
 
+TEST_CASE("An agent is informed how long it has thought, and plays as without that") {
+  const auto run = [](bool thinkTimes) {
+    Field f(Field::Types{{"spheres", "Spheres"}, {"others", "Others"}});
+    f.set("/sys/server/spades", "thinkTimes", thinkTimes);
+    f.run(200);
+    std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
+    std::string text;
+    std::getline(log, text);
+    int informed = 0;
+    for (; std::getline(log, text); ++informed) REQUIRE(text == "K3");
+    REQUIRE((thinkTimes ? informed >= 10 : informed == 0));
+    REQUIRE(f.linesWith("(drive").size() == 14);
+    return f.listener->lines;
+  };
+  const auto lines = run(false);
+  for (int i = 0; i < 3; ++i) REQUIRE(run(true) == lines);
+}
+
+TEST_CASE("An agent that does not answer K is lost, at the step of its next act") {
+  Field f(Field::Types{{"mute", "Mute mute 1"}});
+  f.set("/sys/server/spades", "thinkTimes", true);
+  f.set("/sys/server/spades", "mostThought", 5.0);
+  f.run(60);
+  CHECK(f.linesWith("(create)").size() == 1);
+  CHECK_THAT(f.host.text, Catch::Contains("agent 0 (mute) is lost at step 44: it does not answer K for more than 5 s"));
+}
+
+TEST_CASE("The server has the think times and latencies of its agents, and of no other connection") {
+  Field f(Field::Types{{"spheres", "Spheres"}, {"others", "Others"}});
+  f.set("/sys/server/spades", "actLatency", 7);
+  f.run(5);
+  const auto& times = f.kernel.root().require<IAgentTimes>("/sys/server/spades");
+  REQUIRE(f.listener->agents.size() == 2);
+  IConnection& agent = *f.listener->agents[1];
+  REQUIRE(std::isnan(times.times(agent)->last));
+  f.run(60);
+  const auto now = times.times(agent);
+  REQUIRE(now);
+  CHECK(now->last == 3);
+  CHECK(now->mean == 3);
+  CHECK(now->senseLatency == 10);
+  CHECK(now->actLatency == 7);
+  CHECK(now->dropped == 0);
+  Field other(Field::Types{{"spheres", "Spheres"}});
+  other.run(5);
+  CHECK_FALSE(times.times(*other.listener->agents[0]));
+}
+
 TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
   Field f(Field::Types{{"good", "Good"},
                        {"crashes", "Bad crash 2"},
@@ -208,6 +259,40 @@ TEST_CASE("Who thinks longer acts later, and all think at the same time") {
   f.run(30);
   REQUIRE(f.linesWith("0 (create)") == std::vector<std::string>{"22: 0 (create)"});
   REQUIRE(f.linesWith("1 (create)") == std::vector<std::string>{"24: 1 (create)"});
+}
+
+TEST_CASE("Think time in instructions, or a start that is refused in one sentence") {
+  const std::string lacks = spades::InstructionCounter::lacks();
+  const auto field = [](const char* timer) { return Field(Field::Types{{"thinks", "Thinks"}}, timer); };
+  if (!lacks.empty()) {
+    REQUIRE_THROWS_WITH(field("instructions 1000000000"),
+                        Catch::Contains("/sys/server/spades: no agents of type 'thinks': " + lacks));
+    return;
+  }
+  Field few(Field::Types{{"thinks", "Thinks"}}, "instructions 1000000000");
+  few.run(30);
+  REQUIRE(few.linesWith("0 (create)") == std::vector<std::string>{"22: 0 (create)"});
+  Field many(Field::Types{{"thinks", "Thinks"}}, "instructions 1");
+  many.run(100);
+  REQUIRE(many.linesWith("0 (create)").empty());
+}
+
+TEST_CASE("Think time that becomes one in instructions later is refused at the start, or the agent is lost") {
+  const std::string lacks = spades::InstructionCounter::lacks();
+  Field f(Field::Types{{"thinks", "Thinks"}}, "default");
+  SECTION("before the start") {
+    f.kernel.create("InstructionThinkTime", "/sys/server/spades/think");
+    f.run(30);
+    if (!lacks.empty())
+      CHECK_THAT(f.host.text, Catch::Contains("no more agents of type 'thinks' are started: " + lacks));
+  }
+  SECTION("after it") {
+    f.run(5);
+    f.kernel.create("InstructionThinkTime", "/sys/server/spades/think");
+    f.run(40);
+    if (!lacks.empty()) CHECK_THAT(f.host.text, Catch::Contains("agent 0 (thinks) is lost at step 22: " + lacks));
+  }
+  CHECK(f.linesWith("0 (create)").size() == (lacks.empty() ? 1 : 0));
 }
 
 TEST_CASE("A database that cannot be read says where and what") {

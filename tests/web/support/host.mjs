@@ -36,8 +36,17 @@ export async function startHost(t, ...options) {
 
 /** The same in another working folder. */
 export async function startHostIn(cwd, t, ...options) {
+  return start(cwd, t, ...options, "--agent-port", "0");
+}
+
+/** A host that starts its agents itself, and has no port for others. */
+export async function startHostOfAgents(t, ...options) {
+  return start(undefined, t, ...options);
+}
+
+async function start(cwd, t, ...options) {
   const log = [];
-  const child = spawn(program("sparkhost"), [...patient, ...options, "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"], cwd });
+  const child = spawn(program("sparkhost"), [...patient, ...options, "--monitor-port", "0", "--web-port", "0"], { stdio: ["ignore", "pipe", "pipe"], cwd });
   createInterface({ input: child.stderr }).on("line", (line) => log.push(line));
   const lines = createInterface({ input: child.stdout });
   const ended = new Promise((done) => child.once("exit", done));

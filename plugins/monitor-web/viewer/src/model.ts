@@ -132,13 +132,37 @@ export interface World {
   versions: Versions;
 }
 
+/// How long an agent thinks in simulated time, and its latencies [steps].
+export interface Thinking {
+  /// Its last thought, and the mean of its recent ones; null before the first.
+  last: number | null;
+  mean: number | null;
+  /// From sensing to the arrival of the sensation, and from the end of a thought until its acts take effect.
+  senseLatency: number;
+  actLatency: number;
+  /// Sensations that it did not get because it thought for too long.
+  dropped: number;
+}
+
+/// An agent in the status of the host.
+export interface AgentStatus {
+  path: string;
+  team: string;
+  number: number;
+  /// Wall time from its percepts to its answer [ms]; null if unknown.
+  latency: number | null;
+  /// null if it does not think in simulated time.
+  thinking: Thinking | null;
+}
+
 /// Status of the host; live only, updated once a second.
 export interface Status {
   realTimeFactor: number;
+  /// Simulated time of a step [s]; NaN if unknown.
+  step: number;
   cycle: number;
   spectators: number;
-  /// For each agent: its path, and the wall time from its percepts to its answer [ms]; null if unknown.
-  agents: { path: string; team: string; number: number; latency: number | null }[];
+  agents: AgentStatus[];
   /// Status entries of the game other than mode, score and teams: name and value.
   facts: [string, string][];
 }

@@ -1,4 +1,4 @@
-import type { Drawing, GameEvent, LiveSource, Robot, Sound, Status, World } from "../model";
+import type { AgentStatus, Drawing, GameEvent, LiveSource, Robot, Sound, Status, Thinking, World } from "../model";
 import type { Entry } from "../codec/record";
 import { FrameDecoder } from "../codec/frames";
 import { Connection, type Connect, connectSocket } from "./connection";
@@ -39,6 +39,8 @@ export class Live implements LiveSource {
   private readonly tape = new HostTape((request) => this.ask(request), () => this.present.events, (scene) => this.nameRobotsOf(scene));
   /// Simulated time that the host keeps [s].
   private kept = 0;
+  /// Simulated time of a step [s].
+  private step = NaN;
   private readonly connection: Connection;
   private readonly questions: Questions;
   private readonly decoder = new FrameDecoder();
@@ -203,6 +205,7 @@ export class Live implements LiveSource {
 
   private takeHello(message: Record<string, unknown>): boolean {
     this.kept = typeof message.history === "number" ? message.history : 0;
+    this.step = numberIn(message.step) ?? NaN;
     this.tape.clear();
     if (this.kept > 0) this.ask<Record<string, unknown>>({ do: "history" }).then((outline) => this.takeOutline(outline), () => undefined);
     return true;
@@ -304,7 +307,8 @@ export class Live implements LiveSource {
       realTimeFactor: Number(message.realTimeFactor ?? NaN),
       cycle: Number(message.cycle ?? 0),
       spectators: Number(message.spectators ?? 0),
-      agents: agents.map((a) => ({ path: String(a.path), team: String(a.team ?? ""), number: Number(a.number ?? 0), latency: typeof a.latency === "number" ? a.latency : null })),
+      step: this.step,
+      agents: agents.map(agentOf),
       facts: facts.map(([name, value]) => [name, [value].flat().join(" ")]),
     };
     this.words = wordsOf(message);
@@ -376,6 +380,20 @@ export class Live implements LiveSource {
     });
     if (changed && new Set(robots.map((r) => r.key)).size === robots.length) scene.robots = robots;
   }
+}
+
+function numberIn(value: unknown): number | null {
+  return typeof value === "number" ? value : null;
+}
+
+/// An agent of a status message.
+function agentOf(agent: Record<string, unknown>): AgentStatus {
+  const { path, team, number, latency, thinking } = agent;
+  return { path: String(path), team: String(team ?? ""), number: Number(number ?? 0), latency: numberIn(latency), thinking: isRecord(thinking) ? thinkingOf(thinking) : null };
+}
+
+function thinkingOf({ last, mean, senseLatency, actLatency, dropped }: Record<string, unknown>): Thinking {
+  return { last: numberIn(last), mean: numberIn(mean), senseLatency: Number(senseLatency), actLatency: Number(actLatency), dropped: Number(dropped ?? 0) };
 }
 
 /// playMode, score and teams of a status, as entries of the environment.

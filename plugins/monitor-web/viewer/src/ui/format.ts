@@ -32,6 +32,11 @@ export function latency(milliseconds: number | null): string {
   return `${milliseconds < 10 ? milliseconds.toFixed(1) : milliseconds.toFixed(0)} ms`;
 }
 
+/// A number of steps, "3", "2.6"; "–" while unknown.
+export function steps(number: number | null): string {
+  return number == null || !Number.isFinite(number) ? "–" : String(Number(number.toFixed(1)));
+}
+
 /// The playing speed, "0.5×".
 export function speed(value: number): string {
   return `${Number(value.toFixed(2))}×`;

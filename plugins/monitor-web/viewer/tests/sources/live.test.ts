@@ -127,6 +127,16 @@ test("robots without numbers get those from the status", () => {
   expect(live.status?.agents[0]?.latency).toBeNull();
 });
 
+test("agents that think in simulated time have think times and latencies", () => {
+  begin();
+  host.say({ type: "hello", protocol: 1, step: 0.01 });
+  const agent = { path: "/usr/scene/AgentAspect0", team: "Red", number: 7, latency: null };
+  const thinking = { last: 3, mean: 2.5, senseLatency: 10, actLatency: 9, dropped: 1 };
+  host.say({ type: "status", realTimeFactor: 1, cycle: 5, spectators: 1, agents: [{ ...agent, thinking }, { ...agent, thinking: { senseLatency: 10, actLatency: 9, last: null, mean: null } }, { ...agent, thinking: null }, agent] });
+  expect(live.status?.step).toBe(0.01);
+  expect(live.status?.agents.map((a) => a.thinking)).toEqual([thinking, { ...thinking, last: null, mean: null, dropped: 0 }, null, null]);
+});
+
 describe("requests", () => {
   test("get their own answers", async () => {
     begin();

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 import type { Environment } from "../../src/model";
-import { clock, count, factor, half, latency, modeNames, numberOf, speed, spokenClock, teamTitle } from "../../src/ui/format";
+import { clock, count, factor, half, latency, modeNames, numberOf, speed, spokenClock, steps, teamTitle } from "../../src/ui/format";
 
 describe("numbers", () => {
   it("are formatted as clocks in whole minutes and seconds", () => {
@@ -26,6 +26,7 @@ describe("numbers", () => {
   it("are formatted as latencies in milliseconds, with a dash for unknown ones", () => {
     expect([0.42, 9.94, 41.2].map(latency)).toEqual(["0.4 ms", "9.9 ms", "41 ms"]);
     expect(latency(null)).toBe("–");
+    expect([3, 2.55, 12.04, null, NaN].map(steps)).toEqual(["3", "2.5", "12", "–", "–"]);
   });
   it("are formatted as speeds without unnecessary digits", () => {
     expect([0.1, 0.25, 1, 10].map(speed)).toEqual(["0.1×", "0.25×", "1×", "10×"]);
