@@ -26,9 +26,11 @@ class SpadesServer::Agent final : public IConnection {
  public:
   Agent(SpadesServer& server, int id, const std::string& type, const std::string& timer,
         std::unique_ptr<spades::AgentLink> way)
-      : mind(server.latencies_),
+      : latencies(server.latencies_),
+        mind(latencies),
         link(std::move(way)),
         model(spades::readTimer(timer)),
+        type(type),
         server_(server),
         id_(id),
         name_(fmt::format("agent {} ({})", id, type)) {}
@@ -61,11 +63,13 @@ class SpadesServer::Agent final : public IConnection {
     acts.clear();
   }
 
+  spades::Latencies latencies;
   AgentMind mind;
   std::unique_ptr<spades::AgentLink> link;
   std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
-  std::deque<spades::Act> acts;             ///< on their way, in the order of their time
-  std::string lost;                         ///< why; "": it takes part
+  const std::string type;
+  std::deque<spades::Act> acts;  ///< on their way, in the order of their time
+  std::string lost;              ///< why; "": it takes part
   bool connected = false, closed = false;
   Clock::time_point began{};
 
@@ -86,6 +90,7 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
   d.implements<IReturningAgents>();
   d.implements<IAgentTimes>();
   d.link(&S::thinkTime_, Child<ThinkTime>());
+  d.link(&S::typeLatencies_, Child<TypeLatency>()).doc("Agent types with latencies of their own.");
   d.link(&S::simulation_, At<ISimulation>());
   d.link(&S::tape_, At<IInputTape>());
   d.link(&S::consumer_, At<IConnectionConsumer>(&S::consumerPath_));
@@ -275,7 +280,10 @@ void SpadesServer::poll() {
     start();
   }
   heard_ = false;
-  for (const auto& a : agents_) exchange(*a);
+  for (const auto& a : agents_) {
+    a->latencies = latenciesOf(*a);
+    exchange(*a);
+  }
   if (stage_ == Stage::starting) connectAll();
   if (stage_ == Stage::running)
     for (const auto& a : agents_) deliver(*a);
@@ -284,6 +292,13 @@ void SpadesServer::poll() {
   if (!std::all_of(agents_.begin(), agents_.end(), settled)) return;
   for (const auto& a : agents_) feed(*a);
   removeLost();
+}
+
+spades::Latencies SpadesServer::latenciesOf(const Agent& a) const {
+  spades::Latencies out = latencies_;
+  for (const auto& own : typeLatencies_)
+    if (own->type() == a.type) out.sense = own->sense(), out.act = own->act();
+  return out;
 }
 
 spades::ThinkModel SpadesServer::modelOf(const std::string& timer) const {
@@ -386,8 +401,9 @@ std::optional<AgentTimes> SpadesServer::times(const IConnection& connection) con
   const auto agent = std::find_if(agents_.begin(), agents_.end(), is);
   if (agent == agents_.end()) return std::nullopt;
   const AgentMind& mind = (*agent)->mind;
-  return AgentTimes{mind.thoughts().last(), mind.thoughts().mean(), static_cast<double>(latencies_.sense),
-                    static_cast<double>(latencies_.act), mind.dropped()};
+  const spades::Latencies& latencies = (*agent)->latencies;
+  return AgentTimes{mind.thoughts().last(), mind.thoughts().mean(), static_cast<double>(latencies.sense),
+                    static_cast<double>(latencies.act), mind.dropped()};
 }
 
 bool SpadesServer::wait(double seconds) {

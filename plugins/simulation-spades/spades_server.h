@@ -18,6 +18,7 @@
 #include "comm_port.h"
 #include "spark/describe.h"
 #include "think_time.h"
+#include "type_latency.h"
 
 namespace spark {
 
@@ -59,6 +60,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   void startAgent(const std::string& type);
   spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
+  spades::Latencies latenciesOf(const Agent& agent) const;
   spades::ThinkModel modelOf(const Agent& agent) const;
   spades::ThinkModel modelOf(const std::string& timer) const;
   void exchange(Agent& agent);
@@ -100,6 +102,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   int started_ = 0, lost_ = 0;
 
   Link<ThinkTime> thinkTime_;
+  Links<TypeLatency> typeLatencies_;
   Link<ISimulation> simulation_;
   Link<IInputTape> tape_;
   Link<IConnectionConsumer> consumer_;

@@ -254,6 +254,17 @@ TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
              Catch::Contains("agent 3 (leaves) is lost at step 0: its program has ended without connecting"));
 }
 
+TEST_CASE("Agents of a type have latencies of their own") {
+  Field f(Field::Types{{"quick", "A"}, {"slow", "B"}});
+  f.kernel.create("TypeLatency", "/sys/server/spades/slow");
+  f.set("/sys/server/spades/slow", "type", "slow");
+  f.set("/sys/server/spades/slow", "senseLatency", 12);
+  f.set("/sys/server/spades/slow", "actLatency", 5);
+  f.run(30);
+  REQUIRE(f.linesWith("0 (create)") == std::vector<std::string>{"24: 0 (create)"});  // 1 + 10 + 3 + 10
+  REQUIRE(f.linesWith("1 (create)") == std::vector<std::string>{"21: 1 (create)"});  // 1 + 12 + 3 + 5
+}
+
 TEST_CASE("Who thinks longer acts later, and all think at the same time") {
   Field f(Field::Types{{"quick", "A burn 1"}, {"slow", "B burn 25"}}, "jiffies 10000");
   f.run(30);
