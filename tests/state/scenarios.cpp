@@ -282,7 +282,7 @@ void makeImperfect(World& w) {
 }
 
 void inputImperfect(World& w, int cycle) {
-  w.player(0).next = fmt::format("(force {} 0 1)", cycle % 20 - 10);
+  w.player(0).next = fmt::format("(force {} 0 1){}", cycle % 20 - 10, cycle == 5 ? "(create)" : "");
   if (cycle % 3 == 0) w.player(1).next = fmt::format("(force 0 {} 1)", cycle % 7 - 3);
 }
 
