@@ -313,12 +313,11 @@ spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
 /// Reads the agent's messages.
 void SpadesServer::exchange(Agent& a) {
   a.link->poll();
-  const spades::ThinkModel model = modelOf(a);
   while (a.lost.empty()) {
     const auto message = a.link->receive();
     if (!message) break;
     heard_ = true;
-    const Time thought = model.thought(message->cpuSeconds, message->instructions);
+    const Time thought = a.mind.model().thought(message->cpuSeconds, message->instructions);
     switch (a.mind.take(message->text)) {
       case AgentMind::Result::question:
         a.link->send(fmt::format("C{}", thought));
@@ -334,6 +333,9 @@ void SpadesServer::exchange(Agent& a) {
         break;
       case AgentMind::Result::exit:
         a.lose("it leaves");
+        break;
+      case AgentMind::Result::flood:
+        a.lose(fmt::format("it sends more than {} bytes of acts in one thought", AgentMind::kMostActs));
         break;
       case AgentMind::Result::ready:
       case AgentMind::Result::nothing:
@@ -353,10 +355,9 @@ void SpadesServer::exchange(Agent& a) {
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
   if (a.closed) return;
-  const spades::ThinkModel model = modelOf(a);
-  const auto message = a.mind.next(now(), model.least());
+  const auto message = a.mind.next(now(), modelOf(a));
   if (!message) return;
-  if (model.instructions)  // its think time may be another one since it was started
+  if (a.mind.model().instructions)  // its think time may be another one since it was started
     if (const std::string lacks = a.link->countInstructions(); !lacks.empty()) a.lose(lacks);
   a.began = Clock::now();
   if (a.lost.empty()) a.link->send(*message);

@@ -137,6 +137,7 @@ int main(int argc, char** argv) {
       if (strcmp(way, "hang") == 0) continue; /* no D */
       if (strcmp(way, "crash") == 0) abort();
       if (strcmp(way, "quit") == 0) return 0;
+      while (strcmp(way, "flood") == 0) sendText("A(more)");
       if (strcmp(way, "garbage") == 0) {
         if (write(4, "\377\377\377\377 no length", 14) != 14) return 1;
         continue;

@@ -169,7 +169,8 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
                        {"quits", "Bad quit 2"},
                        {"garbles", "Bad garbage 2"},
                        {"forks", "Bad fork"},
-                       {"hangs", "Bad hang 2"}});
+                       {"hangs", "Bad hang 2"},
+                       {"floods", "Bad flood 2"}});
   f.set("/sys/server/spades", "mostThought", 5.0);
   f.run(100);
   REQUIRE(f.linesWith("(drive").size() == 4);  // of good and forks
@@ -177,7 +178,8 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
   for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed the connection",
                            "agent 2 (quits) is lost at step 44: its program has ended, or closed the connection",
                            "agent 3 (garbles) is lost at step 44: it announces a message of 4294967295 bytes",
-                           "agent 5 (hangs) is lost at step 44: it thinks for more than 5 s"}) {
+                           "agent 5 (hangs) is lost at step 44: it thinks for more than 5 s",
+                           "agent 6 (floods) is lost at step 44: it sends more than 1048576 bytes of acts"}) {
     CAPTURE(line);
     CHECK_THAT(f.host.text, Catch::Contains(line));
   }
