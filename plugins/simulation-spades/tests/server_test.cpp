@@ -243,7 +243,8 @@ TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
   Field f(Field::Types{{"plain", "tcp {port}"},
                        {"floods", "tcp {port} flood"},
                        {"mute", "tcp {port} mute"},
-                       {"leaves", "tcp {port} leave"}},
+                       {"leaves", "tcp {port} leave"},
+                       {"empties", "tcp {port} empty"}},
           "fixed 3", "<protocol>tcp</protocol>");
   f.set("/sys/server/spades", "mostThought", 5.0);
   f.run(60);
@@ -251,6 +252,7 @@ TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
   REQUIRE(f.listener->agents.size() == 1);
   CHECK_THAT(f.host.text,
              Catch::Contains("agent 1 (floods) is lost") && Catch::Contains("bytes that no percept asked for"));
+  CHECK_THAT(f.host.text, Catch::Contains("agent 4 (empties) is lost"));
   CHECK_THAT(f.host.text, Catch::Contains("agent 2 (mute) is lost at step 0: it says nothing for more than 5 s"));
   CHECK_THAT(f.host.text,
              Catch::Contains("agent 3 (leaves) is lost at step 0: its program has ended without connecting"));
