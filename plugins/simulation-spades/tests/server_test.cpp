@@ -347,7 +347,10 @@ TEST_CASE("A program that cannot be started is an error in the log, and the othe
                                                 "</agent_type_external></agentdb>",
                                                 binFolder().string())));
   f.queue("none", 2);
+  f.queue("good", 1);
   f.run(30);
   CHECK_THAT(f.host.text, Catch::Contains("cannot start 'no-such-program'"));
-  CHECK(f.linesWith("0 (create)").size() == 1);
+  CHECK(f.linesWith(" 0 (create)").size() == 1);
+  // Its id is that which it has where all can be started: with it an agent comes back to its robot.
+  CHECK(f.linesWith(" 3 (create)").size() == 1);
 }
