@@ -112,7 +112,8 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   lastHeard_ = now;
   latency_.onMessage(lastHeard_);
   if (!actions_.reserve(message.size(), maxPending))
-    return fmt::format("it sent more than {} bytes within one cycle", maxPending);
+    return fmt::format("it sent more than {} bytes within one cycle, or more than {} words are under way", maxPending,
+                       ActionQueue::kMaxTokens);
   if (!parser_) return "there is no parser below its port or below game control";
 
   Predicates& actions = actions_.beginMessage();
