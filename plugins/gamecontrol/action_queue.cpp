@@ -3,7 +3,6 @@
 namespace spark::gamecontrol {
 
 bool ActionQueue::reserve(std::size_t bytes, std::size_t maxBytes) {
-  constexpr std::size_t kMaxTokens = 1 << 17;  // tokens take more memory than the bytes they are parsed from
   bytes_ += bytes;
   return bytes_ <= maxBytes && tokens() <= kMaxTokens;
 }

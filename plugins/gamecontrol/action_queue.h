@@ -20,6 +20,8 @@ namespace spark::gamecontrol {
 /// pending later, and those that are under way.
 class ActionQueue {
  public:
+  /// Most tokens that wait or are under way: they take more memory than the bytes they are parsed from.
+  static constexpr std::size_t kMaxTokens = 1 << 17;
   /// Counts a message of `bytes`. False if more than `maxBytes` have come since the last depart() or too many
   /// actions wait; the message must not be added then.
   bool reserve(std::size_t bytes, std::size_t maxBytes);

@@ -555,7 +555,8 @@ bool GameControl::seat(IConnection& connection) {
 }
 
 /// A client that names a player whose robot stands there without a client goes on as this player; where players have no
-/// names, the first one; an agent that its port has started again goes on as itself. False: it does not.
+/// names, the first one that does not wait for an agent of its own; an agent that its port has started again goes on as
+/// itself. False: it does not.
 bool GameControl::resume(Participant& client) {
   if (!client.connection()) return false;
   const Participant::Seat seat{client.connection()->port().path(), client.connection()->id()};
@@ -566,7 +567,7 @@ bool GameControl::resume(Participant& client) {
   };
   const auto first = [&]() -> Participant* {
     for (const auto& p : participants_)
-      if (p->vacant() && !p->leaving()) return p.get();
+      if (p->vacant() && !p->leaving() && !p->returns()) return p.get();
     return nullptr;
   };
   const auto named = [&](const Predicates& actions) -> Participant* {

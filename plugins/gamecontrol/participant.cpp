@@ -112,7 +112,8 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   lastHeard_ = now;
   latency_.onMessage(lastHeard_);
   if (!actions_.reserve(message.size(), maxPending))
-    return fmt::format("it sent more than {} bytes within one cycle", maxPending);
+    return fmt::format("it sent more than {} bytes within one cycle, or more than {} words are under way", maxPending,
+                       ActionQueue::kMaxTokens);
   if (!parser_) return "there is no parser below its port or below game control";
 
   Predicates& actions = actions_.beginMessage();
@@ -138,6 +139,7 @@ bool Participant::isSync(std::string_view predicate) const {
 
 void Participant::depart(std::int64_t cycle, const AgentLatencies& latencies) {
   latencies_ = latencies;
+  lockstep_.beginTurn();
   if (!actions_.skips() && !waitsForRobot()) actions_.depart(cycle + latencies.act);
 }
 
@@ -244,9 +246,12 @@ void Participant::encode() {
 }
 
 int Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
+  if (!percepts_.hasArrived(cycle)) return 0;
   int dropped = 0;
+  const std::int64_t before = sent_;
   for (; percepts_.hasArrived(cycle); percepts_.pop(), encoded_ = false)
     if (!deliverFirst(log, cycle, now, tape)) ++dropped;
+  lockstep_.ask(static_cast<int>(sent_ - before));
   return dropped;
 }
 

@@ -176,7 +176,7 @@ class Participant {
   bool mustSync() const { return canSync() && lockstep_.pledged(); }
   /// As mustSync(), but it has not sent a sync predicate: it gets percepts in every cycle and is not waited for.
   bool observes() const { return canSync() && !lockstep_.pledged(); }
-  /// It has answered in this cycle.
+  /// It has answered all messages of this cycle.
   bool synced() const { return lockstep_.synced(); }
   /// True for agents that the start of the match waited for.
   bool expected() const { return lockstep_.expected(); }

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <new>
 
 #include "spark/error.h"
 
@@ -18,21 +20,27 @@ namespace spark::meshes {
 
 namespace {
 constexpr char kResult = 'r', kFailure = 'f';
+constexpr std::size_t kMostResult = std::size_t{1} << 30;
 
-void limit(int resource, std::size_t most) {
-  const rlimit limits{most, most};
+/// `margin`: between the limit that sends a signal and the one that kills.
+void limit(int resource, std::size_t most, std::size_t margin = 0) {
+  const rlimit limits{most, most + margin};
   ::setrlimit(static_cast<__rlimit_resource>(resource), &limits);
 }
 
-/// What holds in the copy: it has limits, ends by every signal that ends a process, and prints nothing.
-void prepareCopy() {
+/// What holds in the copy: it has limits, ends by every signal that ends a process, and with its parent, prints
+/// nothing, and has no descriptor but `to`: it would hold connections open that are closed here, and pipes of other
+/// copies.
+void prepareCopy(int to) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   constexpr std::size_t kMemory = std::size_t{4} << 30, kSeconds = 60;
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + kMemory);
-  limit(RLIMIT_CPU, kSeconds);
+  limit(RLIMIT_CPU, kSeconds, 5);
   limit(RLIMIT_CORE, 0);
-  for (const int ending : {SIGALRM, SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU, SIGPIPE})
+  for (const int ending :
+       {SIGALRM, SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGXCPU, SIGPIPE, SIGINT, SIGTERM, SIGHUP})
     ::signal(ending, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -40,6 +48,8 @@ void prepareCopy() {
   ::alarm(10 * kSeconds);  // should it wait for a lock that another thread held when the copy was made
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
   for (const int output : {1, 2}) ::dup2(nowhere, output);
+  ::close_range(3, static_cast<unsigned>(to) - 1, 0);
+  ::close_range(static_cast<unsigned>(to) + 1, ~0U, 0);
 }
 
 void writeAll(int to, const std::string& bytes) {
@@ -50,22 +60,35 @@ void writeAll(int to, const std::string& bytes) {
   }
 }
 
+/// Reads to the end, or more than kMostResult.
 std::string readAll(int from) {
   std::string out;
   std::array<char, 65536> part;
-  while (true) {
+  while (out.size() <= kMostResult) {
     const ssize_t n = ::read(from, part.data(), part.size());
     if (n > 0) out.append(part.data(), static_cast<std::size_t>(n));
-    if (n == 0 || (n < 0 && errno != EINTR)) return out;
+    if (n == 0 || (n < 0 && errno != EINTR)) break;
   }
+  return out;
+}
+
+/// How a copy ended that has no result.
+std::string endOf(int status) {
+  const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+  if (signal == SIGXCPU) return "the reader took more than a minute of CPU time";
+  if (signal == SIGALRM) return "the reader took more than ten minutes";
+  return signal ? fmt::format("the reader crashed: {}", ::strsignal(signal)) : std::string("the reader crashed");
 }
 
 [[noreturn]] void doInCopy(const std::function<std::string()>& work, int to) {
-  prepareCopy();
+  to = ::fcntl(to, F_DUPFD_CLOEXEC, 3);  // this process may have begun without an output
+  prepareCopy(to);
   std::string out;
   try {
     out = work();
     out.insert(out.begin(), kResult);
+  } catch (const std::bad_alloc&) {
+    out = kFailure + std::string("the reader needs more than 4 GiB of memory");
   } catch (const std::exception& e) {
     out = kFailure + std::string(e.what());
   }
@@ -85,13 +108,12 @@ std::string doneApart(const std::function<std::string()>& work) {
     throw Error(fmt::format("cannot start a process: {}", std::strerror(errno)));
   }
   std::string out = readAll(pipe[0]);
-  ::close(pipe[0]);
+  ::close(pipe[0]);  // which ends a copy that still writes
   int status = 0;
   while (::waitpid(copy, &status, 0) < 0 && errno == EINTR) {
   }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || out.empty())
-    throw Error(WIFSIGNALED(status) ? fmt::format("the reader crashed: {}", ::strsignal(WTERMSIG(status)))
-                                    : std::string("the reader crashed"));
+  if (out.size() > kMostResult) throw Error("what the reader made of it has more than 1 GiB");
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || out.empty()) throw Error(endOf(status));
   const bool failed = out.front() == kFailure;
   out.erase(0, 1);
   if (failed) throw Error(out);

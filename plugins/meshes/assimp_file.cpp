@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstring>
 #include <memory>
+#include <new>
 #include <type_traits>
 
 #include "apart.h"
@@ -90,7 +91,11 @@ AssimpFile readHere(const std::string& format, const std::string& bytes) {
       bytes.data(), bytes.size(),
       aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
       format.c_str());
-  if (!scene) throw Error(importer.GetErrorString());
+  if (!scene) {
+    const std::string error = importer.GetErrorString();
+    if (error == std::bad_alloc().what()) throw std::bad_alloc();  // of which it keeps the text alone
+    throw Error(error);
+  }
   AssimpFile out;
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(materialOf(*scene->mMaterials[m]));
   for (unsigned m = 0; m < scene->mNumMeshes; ++m)

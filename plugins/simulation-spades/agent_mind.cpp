@@ -4,18 +4,21 @@
 
 #include <algorithm>
 #include <charconv>
+#include <limits>
 
 #include "spark/assert.h"
 
 namespace spark::spades {
 
 namespace {
-constexpr std::size_t kMostRequests = 64;  // per cycle; agents of the time send 20
+constexpr std::size_t kMostRequests = 64;    // per cycle; agents of the time send 20
+constexpr std::ptrdiff_t kMostAhead = 1024;  // requests of an agent that wait for their time
+constexpr Time kMostTime = kNever / 2;       // of a request, so that latencies can be added
 
 std::optional<Time> timeIn(std::string_view text) {
   Time t = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), t);
-  if (error != std::errc() || end == text.data()) return std::nullopt;
+  if (error != std::errc() || end == text.data() || t > kMostTime) return std::nullopt;
   return t;
 }
 
@@ -26,13 +29,19 @@ auto firstDue(auto& pending) {
 }  // namespace
 
 void AgentMind::sense(Time sent, std::string data) {
-  pending_.push_back({sent + latencies_.sense, sent, std::move(data)});
+  arrival_ = std::max(arrival_, sent + latencies_.sense);
+  pending_.push_back({arrival_, sent, std::move(data)});
 }
 
-std::optional<std::string> AgentMind::next(Time now, Time least) {
-  if (!ready_ || thinking_) return std::nullopt;
-  least_ = least;
-  if (informed_) return std::nullopt;
+const AgentMind::Terms& AgentMind::termsAt(Time at) const {
+  const auto later = std::find_if(terms_.begin() + 1, terms_.end(), [at](const Terms& t) { return t.from > at; });
+  return *(later - 1);
+}
+
+std::optional<std::string> AgentMind::next(Time now, const ThinkModel& model) {
+  if (terms_.empty() || terms_.back().act != latencies_.act || terms_.back().model != model)
+    terms_.push_back({now, latencies_.act, model});
+  if (!ready_ || thinking_ || informed_) return std::nullopt;
   for (auto first = firstDue(pending_); first != pending_.end(); first = firstDue(pending_)) {
     const Time at = std::max(first->due, ended_);
     if (at > now) return std::nullopt;
@@ -44,7 +53,9 @@ std::optional<std::string> AgentMind::next(Time now, Time least) {
     }
     thinking_ = true;
     began_ = at;
-    return p.sent < 0 ? fmt::format("T{}", p.due) : fmt::format("S{} {} {}", p.sent, at, p.data);
+    cycle_ = termsAt(at);
+    std::erase_if(terms_, [this](const Terms& t) { return t.from < cycle_.from; });
+    return p.sent < 0 ? "T" + p.data : fmt::format("S{} {} {}", p.sent, at, p.data);
   }
   return std::nullopt;
 }
@@ -56,7 +67,10 @@ AgentMind::Result AgentMind::take(std::string_view message) {
     case 'I':
       return std::exchange(ready_, true) ? Result::nothing : Result::ready;
     case 'A':
-      if (thinking_ && !text.empty()) acts_.emplace_back(text);
+      if (!thinking_ || text.empty()) return Result::nothing;
+      actBytes_ += text.size() + sizeof(std::string);
+      if (actBytes_ > kMostActs) return Result::flood;
+      acts_.emplace_back(text);
       return Result::nothing;
     case 'R':
       if (const auto t = timeIn(text); t && thinking_ && requests_.size() < kMostRequests) requests_.push_back(*t);
@@ -76,22 +90,29 @@ AgentMind::Result AgentMind::take(std::string_view message) {
 
 void AgentMind::end(Time thought, std::vector<Act>& acts) {
   thinking_ = false;
+  actBytes_ = 0;
   if (std::exchange(stale_, false)) {
     acts_.clear();
     requests_.clear();
     return;
   }
-  ended_ = began_ + std::max(thought, least_);
+  ended_ = began_ + std::max(thought, cycle_.model.least());
   thoughts_.add(ended_ - began_);
-  for (std::string& data : acts_) acts.push_back({ended_ + latencies_.act, std::move(data)});
+  effect_ = std::max(effect_, ended_ + cycle_.act);
+  for (std::string& data : acts_) acts.push_back({effect_, std::move(data)});
   acts_.clear();
-  for (const Time t : requests_) pending_.push_back({t, -1, {}});
+  auto ahead = std::count_if(pending_.begin(), pending_.end(), [](const Pending& p) { return p.sent < 0; });
+  // After a cycle that took no time the next one that was requested begins later, or time would never go on.
+  const Time earliest = ended_ > began_ ? std::numeric_limits<Time>::min() : began_ + 1;
+  for (const Time t : requests_)
+    if (ahead++ < kMostAhead) pending_.push_back({std::max(t, earliest), -1, std::to_string(t)});
   requests_.clear();
 }
 
 void AgentMind::forget() {
   pending_.clear();
-  ended_ = 0;
+  ended_ = arrival_ = effect_ = 0;
+  if (!terms_.empty()) terms_ = {{0, terms_.back().act, terms_.back().model}};
   stale_ = thinking_;
 }
 
@@ -102,10 +123,11 @@ std::string AgentMind::inform() {
 }
 
 Time AgentMind::horizon() const {
-  if (thinking_) return stale_ ? 0 : began_ + least_ + latencies_.act;
+  if (thinking_) return stale_ ? 0 : std::max(effect_, cycle_.effect(began_));
   // What is pending begins a cycle at the time at which it is due, even if the agent answers later.
   if (!informed_ || pending_.empty()) return kNever;
-  return std::max(firstDue(pending_)->due, ended_) + least_ + latencies_.act;
+  const Time at = std::max(firstDue(pending_)->due, ended_);
+  return std::max(effect_, termsAt(at).effect(at));
 }
 
 }  // namespace spark::spades

@@ -21,8 +21,14 @@
 /// `least` think time, and the latency, after the beginning of the cycle. So agents think at the same time as one
 /// another and as the world, and no result depends on when their messages come.
 ///
+/// Latencies and the model of think times may change meanwhile. A sensation has the latency of the step in which it was
+/// sent, a cycle those of the step in which it began; and none of an agent's sensations or acts overtakes an earlier
+/// one.
+///
 /// Source: Obst and Rollmann, "Spark", 2004, sections 5.1 and 5.2; Riley, "SPADES", 2003.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -38,6 +44,23 @@ namespace spark::spades {
 /// Simulated time [steps].
 using Time = std::int64_t;
 inline constexpr Time kNever = std::numeric_limits<Time>::max();
+
+/// A number of steps for what an agent has used.
+struct ThinkModel {
+  std::optional<Time> fixed = 0;  ///< always as many steps; nullopt: measured
+  double perStep = 0.01;          ///< measured: CPU time of a step [s], or instructions of a step
+  bool instructions = false;      ///< measured: instructions count, not CPU time
+
+  /// Shortest think time [steps]: before it no act can come.
+  Time least() const { return fixed ? *fixed : 1; }
+  /// Steps for a CPU time [s] and a number of instructions.
+  Time thought(double cpuSeconds, double counted = 0) const {
+    if (fixed) return *fixed;
+    const double used = instructions ? counted : cpuSeconds;
+    return std::max<Time>(1, static_cast<Time>(std::ceil(std::min(used / perStep, 1e9))));
+  }
+  bool operator==(const ThinkModel&) const = default;
+};
 
 /// Latencies of agents [steps].
 struct Latencies {
@@ -55,13 +78,15 @@ struct Act {
 /// The agent's side of the conversation is in messages of one letter and text, without framing.
 class AgentMind {
  public:
+  /// Most bytes of the acts of a cycle.
+  static constexpr std::size_t kMostActs = 1 << 20;
   explicit AgentMind(const Latencies& latencies) : latencies_(latencies) {}
 
   /// Queues what the agent senses at time `sent`; may be empty.
   void sense(Time sent, std::string data);
-  /// The next message to the agent that is due at `now`, if it can take one; it begins a think cycle. `least`: smallest
-  /// think time of the cycle [steps].
-  std::optional<std::string> next(Time now, Time least);
+  /// The next message to the agent that is due at `now`, if it can take one; it begins a think cycle. `model`: of
+  /// cycles that begin from now on. Call it in each step.
+  std::optional<std::string> next(Time now, const ThinkModel& model);
   /// What follows from a message of the agent.
   enum class Result {
     nothing,
@@ -69,6 +94,7 @@ class AgentMind {
     question,  ///< it asks for the think time so far: answer with C
     done,      ///< the cycle ends: call end()
     exit,      ///< it leaves
+    flood,     ///< it sends more than kMostActs in a cycle
   };
   Result take(std::string_view message);
   /// Ends the cycle after `thought` steps; appends its acts.
@@ -86,6 +112,8 @@ class AgentMind {
   bool informed() const { return informed_; }
   /// When the cycle began. Only while thinking().
   Time began() const { return began_; }
+  /// The model of its think time. Only while thinking().
+  const ThinkModel& model() const { return cycle_.model; }
   /// Until it answers, the world must not execute the step that begins at this time; kNever: no limit.
   Time horizon() const;
   /// How long it thought in its last cycles.
@@ -99,14 +127,26 @@ class AgentMind {
     Time sent;  ///< of a sensation; -1: a time notification
     std::string data;
   };
+  /// What holds for cycles that begin at `from` or later.
+  struct Terms {
+    Time from, act;
+    ThinkModel model;
+    /// The first time at which acts of a cycle that begins at `at` could take effect.
+    Time effect(Time at) const { return at + model.least() + act; }
+  };
+  const Terms& termsAt(Time at) const;
 
   const Latencies& latencies_;
   std::deque<Pending> pending_;  ///< in the order of insertion
   std::vector<std::string> acts_;
   std::vector<Time> requests_;
   bool ready_ = false, thinking_ = false, informed_ = false;
-  bool stale_ = false;  ///< forget() was called since it began to think
-  Time began_ = 0, ended_ = 0, least_ = 0;
+  bool stale_ = false;        ///< forget() was called since it began to think
+  std::vector<Terms> terms_;  ///< in the order of time, from the cycle that began last on
+  Terms cycle_{};             ///< of the cycle
+  std::size_t actBytes_ = 0;  ///< of acts_
+  Time began_ = 0, ended_ = 0;
+  Time arrival_ = 0, effect_ = 0;  ///< of the last sensation, and of the acts of the last cycle
   std::int64_t dropped_ = 0;
   RecentThoughts thoughts_;
 };

@@ -71,7 +71,8 @@ AgentProgram::AgentProgram(const AgentType& type, const std::vector<std::string>
 
 AgentProgram::~AgentProgram() {
   ::kill(-pid_, SIGKILL);
-  ::waitpid(pid_, nullptr, 0);
+  while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
+  }
 }
 
 bool AgentProgram::ended() const {

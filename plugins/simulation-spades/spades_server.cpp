@@ -190,11 +190,15 @@ void SpadesServer::listen() {
 void SpadesServer::start() {
   stage_ = Stage::starting;
   if (!logs_.empty()) std::filesystem::create_directories(logs_);
-  for (const auto& [type, count] : queue_) try {
+  for (const auto& [type, count] : queue_) {
+    const int next = nextId_ + count;  // also without those that cannot be started: agents come back by their ids
+    try {
       for (int i = 0; i < count; ++i) startAgent(type);
     } catch (const std::exception& e) {
       kernel().log().error("{}: no more agents of type '{}' are started: {}", path(), type, e.what());
     }
+    nextId_ = next;
+  }
 }
 
 /// The communication servers that have a type start its agents in turns.
@@ -210,10 +214,10 @@ void SpadesServer::startAgent(const std::string& type) {
   std::string timer;
   const int number = ++numbers_[type];
   if (spades::CommPort::Server* const server = serverFor(type)) {
-    link = comm_->start(*server, started_, type, number);
+    link = comm_->start(*server, nextId_, type, number);
     timer = *server->timerOf(type);
   } else if (const auto known = types_.find(type); known != types_.end()) {
-    const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, started_);
+    const std::string log = logs_.empty() ? std::string() : fmt::format("{}/agent{}", logs_, nextId_);
     link = spades::startAgent(known->second, number, log);
     timer = known->second.timer;
   } else {
@@ -224,8 +228,8 @@ void SpadesServer::startAgent(const std::string& type) {
       link->send("X");
       throw Error(lacks);
     }
-  agents_.push_back(std::make_unique<Agent>(*this, started_, type, timer, std::move(link)));
-  ++started_;
+  agents_.push_back(std::make_unique<Agent>(*this, nextId_, type, timer, std::move(link)));
+  ++nextId_;
   agents_.back()->link->send("D");
   agents_.back()->began = Clock::now();
 }
@@ -313,12 +317,11 @@ spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
 /// Reads the agent's messages.
 void SpadesServer::exchange(Agent& a) {
   a.link->poll();
-  const spades::ThinkModel model = modelOf(a);
   while (a.lost.empty()) {
     const auto message = a.link->receive();
     if (!message) break;
     heard_ = true;
-    const Time thought = model.thought(message->cpuSeconds, message->instructions);
+    const Time thought = a.mind.model().thought(message->cpuSeconds, message->instructions);
     switch (a.mind.take(message->text)) {
       case AgentMind::Result::question:
         a.link->send(fmt::format("C{}", thought));
@@ -334,6 +337,9 @@ void SpadesServer::exchange(Agent& a) {
         break;
       case AgentMind::Result::exit:
         a.lose("it leaves");
+        break;
+      case AgentMind::Result::flood:
+        a.lose(fmt::format("it sends more than {} bytes of acts in one thought", AgentMind::kMostActs));
         break;
       case AgentMind::Result::ready:
       case AgentMind::Result::nothing:
@@ -353,10 +359,9 @@ void SpadesServer::exchange(Agent& a) {
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
   if (a.closed) return;
-  const spades::ThinkModel model = modelOf(a);
-  const auto message = a.mind.next(now(), model.least());
+  const auto message = a.mind.next(now(), modelOf(a));
   if (!message) return;
-  if (model.instructions)  // its think time may be another one since it was started
+  if (a.mind.model().instructions)  // its think time may be another one since it was started
     if (const std::string lacks = a.link->countInstructions(); !lacks.empty()) a.lose(lacks);
   a.began = Clock::now();
   if (a.lost.empty()) a.link->send(*message);

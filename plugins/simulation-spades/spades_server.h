@@ -99,7 +99,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   Stage stage_ = Stage::queued;
   bool heard_ = false;    ///< something happened in this poll()
   bool returns_ = false;  ///< a state was loaded, whose agents are those of the same ids
-  int started_ = 0, lost_ = 0;
+  int nextId_ = 0, lost_ = 0;
 
   Link<ThinkTime> thinkTime_;
   Links<TypeLatency> typeLatencies_;

@@ -20,6 +20,7 @@ namespace {
 /// Listens on this machine for one connection, at any free port.
 std::pair<int, int> listenForOne() {
   const int listener = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  if (listener < 0) throw Error(fmt::format("cannot make a socket: {}", std::strerror(errno)));
   sockaddr_in at = {};
   at.sin_family = AF_INET;
   at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
@@ -32,6 +33,9 @@ std::pair<int, int> listenForOne() {
   }
   return {listener, ntohs(at.sin_port)};
 }
+
+/// What a message that waits takes, also an empty one.
+std::size_t memoryOf(std::string_view message) { return message.size() + sizeof(std::string); }
 
 std::string replaced(std::string text, std::string_view what, int by) {
   for (std::size_t at = 0; (at = text.find(what, at)) != text.npos;) text.replace(at, what.size(), std::to_string(by));
@@ -103,10 +107,11 @@ void TcpAgent::accept() {
 
 void TcpAgent::keepMessages() {
   while (const auto frame = connection_->receive()) {
-    bytes_ += frame->size();
+    bytes_ += memoryOf(*frame);
     messages_.emplace_back(*frame);
   }
-  if (bytes_ > FrameStream::kMost) lost_ = fmt::format("it has sent {} bytes that no percept asked for", bytes_);
+  if (bytes_ > FrameStream::kMost)
+    lost_ = fmt::format("it has sent more than {} bytes that no percept asked for", FrameStream::kMost);
 }
 
 std::optional<AgentLink::Message> TcpAgent::receive() {
@@ -121,7 +126,7 @@ std::optional<AgentLink::Message> TcpAgent::receive() {
   if (cycle_ == Cycle::none || messages_.empty()) return std::nullopt;
   const std::string text = std::move(messages_.front());
   messages_.pop_front();
-  bytes_ -= text.size();
+  bytes_ -= memoryOf(text);
   if (cycle_ == Cycle::first || text.find(ends_) != text.npos) cycle_ = Cycle::done;
   return program_->measured("A" + text);
 }

@@ -52,7 +52,7 @@ class TcpAgent final : public AgentLink {
   std::unique_ptr<AgentProgram> program_;
   std::unique_ptr<FrameStream> connection_;  ///< nullptr: it has not connected
   std::deque<std::string> messages_;         ///< of the program, that wait for a cycle
-  std::size_t bytes_ = 0;                    ///< of messages_
+  std::size_t bytes_ = 0;                    ///< of memory of messages_
   std::string lost_;
   bool asked_ = false, ready_ = false, begun_ = false;
   Cycle cycle_ = Cycle::none;

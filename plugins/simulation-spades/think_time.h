@@ -2,8 +2,6 @@
 /// \file
 /// How long agents think, in simulated time.
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <string_view>
 
@@ -13,22 +11,6 @@
 
 namespace spark {
 namespace spades {
-
-/// A number of steps for what an agent has used.
-struct ThinkModel {
-  std::optional<Time> fixed = 0;  ///< always as many steps; nullopt: measured
-  double perStep = 0.01;          ///< measured: CPU time of a step [s], or instructions of a step
-  bool instructions = false;      ///< measured: instructions count, not CPU time
-
-  /// Shortest think time [steps]: before it no act can come.
-  Time least() const { return fixed ? *fixed : 1; }
-  /// Steps for a CPU time [s] and a number of instructions.
-  Time thought(double cpuSeconds, double counted = 0) const {
-    if (fixed) return *fixed;
-    const double used = instructions ? counted : cpuSeconds;
-    return std::max<Time>(1, static_cast<Time>(std::ceil(std::min(used / perStep, 1e9))));
-  }
-};
 
 /// The model that a timer of the agent database names: "fixed 3", "jiffies 2000" (CPU microseconds per step),
 /// "instructions 10000000" (per step). "perfctr 2000" and "perfctr_instr 2000" are the same as "jiffies 2000": what

@@ -26,7 +26,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       if (now % 3 == 0) (void)mind.inform();
     }
     if (now % 5 == 0) mind.sense(now, "x");
-    (void)mind.next(now, 1);
+    (void)mind.next(now, {1, 0});
     at = end + 1;
   }
 

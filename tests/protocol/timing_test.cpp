@@ -140,6 +140,60 @@ TEST_CASE("In lockstep each answer allows one cycle, whatever the latencies") {
   }
 }
 
+TEST_CASE("In lockstep latencies may change: each message is answered once, and a cycle without one waits for nobody") {
+  Arena a(true);
+  a.set("expect", 1);
+  Client c = a.client();
+  c.send("(scene robot)(init (unum 1)(teamname A))(syn)");
+  a.until([&] { return !c.drain().empty(); });
+  const auto answer = [&](const char* actions) {
+    c.send(actions);
+    c.arrive();
+  };
+  const auto run = [&](int cycles) {  // in each of which one message comes and is answered
+    for (int i = 0; i < cycles; ++i) {
+      REQUIRE_FALSE(a.step());
+      answer("(syn)");
+      REQUIRE(a.step());
+      REQUIRE(c.receive().has_value());
+    }
+  };
+  run(5);
+  // Of what was sensed with the old latency one message is under way.
+  a.setTiming("senseLatency", 5);
+  run(1);
+  answer("(syn)");
+  const auto before = a.cycles();
+  for (int i = 0; i < 2; ++i) REQUIRE(a.step());
+  // So it is after a state is restored.
+  std::string saved, again;
+  saveControl(a, saved);
+  StateReader in(saved);
+  loadTree(*a.kernel.root().find("/sys/server/gamecontrol"), in);
+  saveControl(a, again);
+  CHECK((again == saved));
+  for (int i = 0; i < 3; ++i) REQUIRE(a.step());
+  REQUIRE(a.cycles() == before + 5);
+  REQUIRE(c.receive().has_value());
+  run(10);
+  a.setTiming("senseLatency", 1);
+  run(4);
+  answer("(syn)");
+  REQUIRE(a.step());
+  std::size_t messages = 0;
+  for (; messages < 5; ++messages) REQUIRE(c.receive().has_value());
+  for (; messages > 1; --messages) {
+    answer("(syn)");
+    REQUIRE_FALSE(a.step());
+  }
+  answer("(he1 4)(syn)");
+  actionLog().clear();
+  REQUIRE(a.step());
+  CHECK(actionLog() == std::vector<std::string>{"1 he1 4"});
+  REQUIRE(c.receive().has_value());
+  run(5);
+}
+
 TEST_CASE("With agentStep messages arrive in the first turn in which they are due") {
   Arena a;
   a.setTiming("agentStep", 0.06);  // three cycles

@@ -1,12 +1,12 @@
 /* An agent for the middleware SPADES, written from the description of its messages alone: it reads from descriptor 3
  * and writes to descriptor 4, each message behind a length of four bytes, big-endian.
  *
- *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | mute N | fork]
- *     agent tcp PORT [twice | flood | mute | leave]
+ *     agent TEAM [burn MS | hang N | crash N | garbage N | deaf N | quit N | last N | mute N | flood N | fork]
+ *     agent tcp PORT [twice | flood | empty | mute | leave]
  *
  * The second form is an agent of the plain loop: it connects to PORT, sends (scene) and answers the n-th percepts with
- * (answer n), and (syn) in a message of its own. `twice` answers twice, `flood` sends without being asked, `mute` never
- * sends anything, and `leave` does not connect.
+ * (answer n), and (syn) in a message of its own. `twice` answers twice, `flood` sends without being asked, `empty` the
+ * same without text, `mute` never sends anything, and `leave` does not connect.
  *
  * Like the agents of 2004 it counts sensations: it creates its sphere at the first, joins its team at the second, and
  * plays from the third on: it asks for the think time so far, requests a time notification, drives towards the ball and
@@ -92,6 +92,7 @@ static int playOverTcp(int port, const char* way) {
     for (;;) pause();
   sendText("(scene)");
   while (strcmp(way, "flood") == 0) sendText("(more)");
+  while (strcmp(way, "empty") == 0) sendText("");
   for (int n = 1;; ++n) {
     receive();
     for (int i = strcmp(way, "twice") == 0 ? 2 : 1; i > 0; --i) {
@@ -137,6 +138,7 @@ int main(int argc, char** argv) {
       if (strcmp(way, "hang") == 0) continue; /* no D */
       if (strcmp(way, "crash") == 0) abort();
       if (strcmp(way, "quit") == 0) return 0;
+      while (strcmp(way, "flood") == 0) sendText("A(more)");
       if (strcmp(way, "garbage") == 0) {
         if (write(4, "\377\377\377\377 no length", 14) != 14) return 1;
         continue;

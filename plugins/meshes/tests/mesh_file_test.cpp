@@ -1,8 +1,14 @@
 #include "../mesh_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
 #include <catch2/catch.hpp>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 
 #include "../apart.h"
 #include "../hull.h"
@@ -88,6 +94,30 @@ TEST_CASE("Work that crashes, or takes too much memory, ends alone") {
   CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string { throw Error("expected a mesh"); }), "expected a mesh");
   CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string { std::abort(); }), Catch::Contains("the reader crashed"));
   CHECK_THROWS_AS(meshes::doneApart([] { return std::string(std::size_t{1} << 40, 'x'); }), Error);
+  CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string { throw std::bad_alloc(); }), Catch::Contains("4 GiB"));
+  CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string {
+                      std::raise(SIGXCPU);
+                      return {};
+                    }),
+                    "the reader took more than a minute of CPU time");
+}
+
+TEST_CASE("Work that is done apart has no descriptor of this process, and ends with the signals that end one") {
+  std::array<int, 2> ours;
+  REQUIRE(::pipe(ours.data()) == 0);
+  CHECK(meshes::doneApart([&ours] {
+          const bool has = ::fcntl(ours[0], F_GETFD) >= 0 || ::fcntl(ours[1], F_GETFD) >= 0;
+          return std::string(has ? "some" : "none");
+        }) == "none");
+  ::close(ours[0]);
+  ::close(ours[1]);
+  const auto usual = std::signal(SIGTERM, [](int) {});
+  CHECK_THROWS_WITH(meshes::doneApart([]() -> std::string {
+                      std::raise(SIGTERM);
+                      return "done";
+                    }),
+                    Catch::Contains("Terminated"));
+  std::signal(SIGTERM, usual);
 }
 
 TEST_CASE("A mesh file without triangles, or of an unknown kind, is refused with a reason") {

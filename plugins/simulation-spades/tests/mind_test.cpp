@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -19,7 +20,7 @@ struct Talk {
   Time think;
 
   explicit Talk(Time steps = 3) : think(steps) { REQUIRE(mind.take("I") == Result::ready); }
-  std::optional<std::string> at(Time now) { return mind.next(now, think); }
+  std::optional<std::string> at(Time now) { return mind.next(now, {think, 0}); }
   void done() {
     REQUIRE(mind.take("D") == Result::done);
     mind.end(think, acts);
@@ -175,6 +176,99 @@ TEST_CASE("the order of messages does not depend on when the agent answers K") {
   const auto told = run(0);
   REQUIRE(told[1] == "K15");
   for (const Time after : {1, 7, 19, 100}) REQUIRE(run(after) == told);
+}
+
+TEST_CASE("latencies and think times that change while the agent thinks mean the same whenever it answers") {
+  // What the agent is told and when its acts take effect, in a world that waits for it only where it must.
+  const auto run = [](Time answersAfter, bool informs) {
+    Talk t;
+    std::vector<std::string> events;
+    std::size_t inEffect = 0;
+    Time since = 0;
+    for (Time now = 0; now < 400; ++now) {
+      if (now % 90 == 24) t.latencies.act = 1;
+      if (now % 90 == 50) t.latencies.act = 40;
+      if (now % 70 == 30) t.think = 12;
+      if (now % 70 == 60) t.think = 2;
+      if (now % 50 == 10) t.latencies.sense = 25;
+      if (now % 50 == 20) t.latencies.sense = 2;
+      const auto mustAnswer = [&] { return now - since >= answersAfter || t.mind.horizon() <= now; };
+      do {
+        if (t.mind.thinking() && mustAnswer()) {
+          if (t.mind.began() % 3 == 0) t.mind.take(fmt::format("A{}", t.mind.began()));
+          REQUIRE(t.mind.take("D") == Result::done);
+          t.mind.end(t.mind.model().thought(0), t.acts);
+          if (informs) t.mind.inform();
+        }
+        if (t.mind.informed() && mustAnswer()) t.mind.take("D");
+        if (const auto m = t.at(now)) events.push_back(*m), since = now;
+      } while (t.mind.horizon() <= now);
+      for (; inEffect < t.acts.size() && t.acts[inEffect].due <= now; ++inEffect)
+        events.push_back(fmt::format("{} in effect at {}", t.acts[inEffect].data, now));
+      if (now % 7 == 0) t.mind.sense(now, "");
+    }
+    std::sort(events.begin(), events.end());
+    std::erase_if(events, [](const std::string& e) { return e.starts_with("S3"); });  // later ones may not be there yet
+    return events;
+  };
+  for (const bool informs : {false, true}) {
+    const auto events = run(0, informs);
+    REQUIRE(events.size() > 30);
+    for (const Time after : {1, 5, 9, 100}) REQUIRE(run(after, informs) == events);
+  }
+}
+
+TEST_CASE("no sensation and no act overtakes an earlier one where latencies become shorter") {
+  Talk t;
+  t.mind.sense(1, "a");
+  t.latencies.sense = 2;
+  t.mind.sense(2, "b");
+  REQUIRE_FALSE(t.at(4));
+  REQUIRE(t.at(11) == "S1 11 a");
+  t.mind.take("A1");
+  t.done();
+  t.latencies.act = 1;
+  REQUIRE(t.at(14) == "S2 14 b");
+  t.mind.take("A2");
+  t.done();
+  REQUIRE(t.acts.at(0).due == 24);
+  REQUIRE(t.acts.at(1).due == 24);
+}
+
+TEST_CASE("time goes on whatever an agent requests") {
+  Talk t(0);  // its thoughts take no time
+  t.mind.sense(1, "");
+  REQUIRE(t.at(11));
+  t.mind.take("R0");
+  t.mind.take("R9223372036854775807");  // never
+  t.done();
+  REQUIRE_FALSE(t.at(11));
+  REQUIRE(t.at(12) == "T0");
+  t.done();
+  t.mind.inform();
+  REQUIRE(t.mind.horizon() == kNever);
+  t.mind.take("D");
+  // What it requests and does not get yet is limited.
+  for (Time now = 20; now < 60; ++now) {
+    t.mind.sense(now - 10, "");
+    REQUIRE(t.at(now));
+    for (int i = 0; i < 64; ++i) t.mind.take("R1000");
+    t.done();
+  }
+  Time told = 0;
+  for (Time now = 1000; t.at(now); ++told) t.done();
+  REQUIRE(told == 1024);
+}
+
+TEST_CASE("an agent that floods its thought with acts is found out") {
+  Talk t;
+  t.mind.sense(1, "");
+  REQUIRE(t.at(11));
+  const std::string act = "A" + std::string(1000, 'x');
+  int taken = 0;
+  while (t.mind.take(act) == Result::nothing) ++taken;
+  REQUIRE(taken > 900);
+  REQUIRE(taken < 1100);
 }
 
 TEST_CASE("the last thoughts of an agent and their mean") {

@@ -169,7 +169,8 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
                        {"quits", "Bad quit 2"},
                        {"garbles", "Bad garbage 2"},
                        {"forks", "Bad fork"},
-                       {"hangs", "Bad hang 2"}});
+                       {"hangs", "Bad hang 2"},
+                       {"floods", "Bad flood 2"}});
   f.set("/sys/server/spades", "mostThought", 5.0);
   f.run(100);
   REQUIRE(f.linesWith("(drive").size() == 4);  // of good and forks
@@ -177,7 +178,8 @@ TEST_CASE("Agents that misbehave are lost alone, by name and reason") {
   for (const char* line : {"agent 1 (crashes) is lost at step 44: its program has ended, or closed the connection",
                            "agent 2 (quits) is lost at step 44: its program has ended, or closed the connection",
                            "agent 3 (garbles) is lost at step 44: it announces a message of 4294967295 bytes",
-                           "agent 5 (hangs) is lost at step 44: it thinks for more than 5 s"}) {
+                           "agent 5 (hangs) is lost at step 44: it thinks for more than 5 s",
+                           "agent 6 (floods) is lost at step 44: it sends more than 1048576 bytes of acts"}) {
     CAPTURE(line);
     CHECK_THAT(f.host.text, Catch::Contains(line));
   }
@@ -241,7 +243,8 @@ TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
   Field f(Field::Types{{"plain", "tcp {port}"},
                        {"floods", "tcp {port} flood"},
                        {"mute", "tcp {port} mute"},
-                       {"leaves", "tcp {port} leave"}},
+                       {"leaves", "tcp {port} leave"},
+                       {"empties", "tcp {port} empty"}},
           "fixed 3", "<protocol>tcp</protocol>");
   f.set("/sys/server/spades", "mostThought", 5.0);
   f.run(60);
@@ -249,6 +252,7 @@ TEST_CASE("Programs made for plain TCP that misbehave are lost alone") {
   REQUIRE(f.listener->agents.size() == 1);
   CHECK_THAT(f.host.text,
              Catch::Contains("agent 1 (floods) is lost") && Catch::Contains("bytes that no percept asked for"));
+  CHECK_THAT(f.host.text, Catch::Contains("agent 4 (empties) is lost"));
   CHECK_THAT(f.host.text, Catch::Contains("agent 2 (mute) is lost at step 0: it says nothing for more than 5 s"));
   CHECK_THAT(f.host.text,
              Catch::Contains("agent 3 (leaves) is lost at step 0: its program has ended without connecting"));
@@ -343,7 +347,10 @@ TEST_CASE("A program that cannot be started is an error in the log, and the othe
                                                 "</agent_type_external></agentdb>",
                                                 binFolder().string())));
   f.queue("none", 2);
+  f.queue("good", 1);
   f.run(30);
   CHECK_THAT(f.host.text, Catch::Contains("cannot start 'no-such-program'"));
-  CHECK(f.linesWith("0 (create)").size() == 1);
+  CHECK(f.linesWith(" 0 (create)").size() == 1);
+  // Its id is that which it has where all can be started: with it an agent comes back to its robot.
+  CHECK(f.linesWith(" 3 (create)").size() == 1);
 }

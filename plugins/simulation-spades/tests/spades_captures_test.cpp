@@ -41,7 +41,7 @@ TEST_CASE("the recorded conversation of an agent of 2006 is the same, message fo
         mind.sense(sent, text.substr(static_cast<std::size_t>(at) + 1));
       }
       std::optional<std::string> told;
-      for (; !told && now < 10000; ++now) told = mind.next(now, kThink);
+      for (; !told && now < 10000; ++now) told = mind.next(now, {kThink, 0});
       --now;
       REQUIRE(told == text);
       ++compared;
