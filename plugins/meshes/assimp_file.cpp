@@ -20,6 +20,7 @@
 
 #include "apart.h"
 #include "spark/error.h"
+#include "spark/state_stream.h"
 
 namespace spark::meshes {
 
@@ -104,79 +105,59 @@ AssimpFile readHere(const std::string& format, const std::string& bytes) {
   return out;
 }
 
-/// Writes what another process of this program reads.
-struct Writer {
-  std::string bytes;
-  template <class T>
-  void operator()(const T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-  }
-  template <class T>
-  void list(const T& values) {
-    (*this)(values.size());
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof *values.data());
-  }
-};
+// ---- from the process that reads to the one that asked ----
 
-/// Reads what Writer wrote. Throws Error at the end of the bytes.
-struct Reader {
-  const std::string& bytes;
-  std::size_t at = 0;
-  void take(void* to, std::size_t size) {
-    if (size > bytes.size() - at) throw Error("the reader crashed");
-    if (size > 0) std::memcpy(to, bytes.data() + at, size);
-    at += size;
-  }
-  template <class T>
-  void operator()(T& value) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    take(&value, sizeof value);
-  }
-  template <class T>
-  void list(T& values) {
-    std::size_t size = 0;
-    (*this)(size);
-    if (size > (bytes.size() - at) / sizeof *values.data()) throw Error("the reader crashed");
-    values.resize(size);
-    take(values.data(), size * sizeof *values.data());
-  }
-};
+template <class T>
+std::string_view bytesOf(const T* values, std::size_t count) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return {reinterpret_cast<const char*>(values), count * sizeof(T)};
+}
 
-/// Hands each part of a file to a Writer or a Reader. `resize(list)` gives a list the length that it has there.
-template <class Stream, class File, class Resize>
-void pass(Stream& stream, File& file, const Resize& resize) {
-  resize(file.meshes);
-  for (auto& mesh : file.meshes) {
-    stream.list(mesh.corners);
-    stream.list(mesh.triangles);
-    stream(mesh.material);
-  }
-  resize(file.materials);
-  for (auto& material : file.materials) {
-    stream.list(material.name);
-    stream(material.look);
-    stream.list(material.texture);
-  }
+/// The values that bytesOf() made bytes of.
+template <class T>
+std::vector<T> valuesOf(const std::string& bytes) {
+  std::vector<T> out(bytes.size() / sizeof(T));
+  if (!out.empty()) std::memcpy(out.data(), bytes.data(), out.size() * sizeof(T));
+  return out;
 }
 
 std::string written(const AssimpFile& file) {
-  Writer out;
-  pass(out, file, [&out](const auto& list) { out(list.size()); });
-  return std::move(out.bytes);
+  StateWriter out(true);
+  out.write(static_cast<std::uint64_t>(file.meshes.size()));
+  for (const AssimpMesh& mesh : file.meshes) {
+    out.write(bytesOf(mesh.corners.data(), mesh.corners.size()));
+    out.write(bytesOf(mesh.triangles.data(), mesh.triangles.size()));
+    out.write(static_cast<std::uint64_t>(mesh.material));
+  }
+  out.write(static_cast<std::uint64_t>(file.materials.size()));
+  for (const MeshMaterial& material : file.materials) {
+    out.write(material.name);
+    out.write(bytesOf(&material.look, 1));
+    out.write(material.texture);
+  }
+  return out.take();
 }
 
 AssimpFile readBack(const std::string& bytes) {
-  Reader in{bytes};
+  StateReader in(bytes);
   AssimpFile out;
-  pass(in, out, [&in](auto& list) {
-    std::size_t size = 0;
-    in(size);
-    if (size > in.bytes.size()) throw Error("the reader crashed");
-    list.resize(size);
-  });
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    AssimpMesh& mesh = out.meshes.emplace_back();
+    mesh.corners = valuesOf<AssimpMesh::Corner>(in.readString());
+    mesh.triangles = valuesOf<std::uint32_t>(in.readString());
+    mesh.material = static_cast<std::uint32_t>(in.readInteger());
+  }
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    MeshMaterial& material = out.materials.emplace_back();
+    material.name = in.readString();
+    const auto looks = valuesOf<IMaterial::Look>(in.readString());
+    if (looks.size() != 1) throw Error("expected the look of a material");
+    material.look = looks.front();
+    material.texture = in.readString();
+  }
   for (const AssimpMesh& mesh : out.meshes) {
-    if (mesh.material >= out.materials.size() || mesh.triangles.size() % 3 != 0) throw Error("the reader crashed");
+    if (mesh.material >= out.materials.size() || mesh.triangles.size() % 3 != 0)
+      throw Error("expected triangles and their material");
     for (const std::uint32_t i : mesh.triangles)
       if (i >= mesh.corners.size()) throw Error("expected indices of vertices in faces");
   }

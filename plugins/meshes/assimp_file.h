@@ -22,7 +22,7 @@ struct AssimpMesh {
   };
   std::vector<Corner> corners;
   std::vector<std::uint32_t> triangles;  ///< indices of `corners`, three for each triangle
-  std::uint32_t material;                ///< index of AssimpFile::materials
+  std::uint32_t material = 0;            ///< index of AssimpFile::materials
 };
 
 /// A file with all its objects at their places, as triangles. A material without a name is one that the file does not
