@@ -157,13 +157,12 @@ class IAgentTiming {
   virtual AgentLatencies latencies(const AgentAspect&) const { return {}; }
 };
 
-/// A port whose agents come back in a run that goes on from a saved state: it starts them itself.
+/// A port that starts its agents itself: in a run that goes on from a saved state each comes back with the id that its
+/// connection had then.
 class IReturningAgents {
  public:
   SPARK_INTERFACE(IReturningAgents, 1);
   virtual ~IReturningAgents() = default;
-  /// True if the connection `id` is that of the agent that had this id when the state was saved.
-  virtual bool returns(std::uint64_t id) const = 0;
 };
 
 /// How long an agent thinks in simulated time, and its latencies.

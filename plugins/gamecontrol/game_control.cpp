@@ -240,7 +240,8 @@ void GameControl::act(const Event& event) {
   lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
-  if (std::exchange(restored_, false)) dropNameless();  // names are part of the state of what follows in the tree
+  if (std::exchange(restored_, false) && joinPolicy_)
+    gamecontrol::dropNameless(participants_);  // now, as names are part of the state of what follows in the tree
   removeLeaving();
   joinBehaviors();
   joinNewcomers();
@@ -255,9 +256,9 @@ void GameControl::act(const Event& event) {
 
 void GameControl::takeTurn(const Event& event) {
   cyclesToTurn_ = std::max(timing().cyclesToNextTurn(event.step), 1) - 1;
-  if (joinPolicy_ && hasVacant())  // without names they went on when they joined
+  if (joinPolicy_ && gamecontrol::hasVacant(participants_))  // without names they went on when they joined
     for (const auto& p : participants_)
-      if (!p->vacant() && !p->leaving()) resume(*p);
+      if (p->connection() && !p->leaving()) resume(gamecontrol::vacantNamed(participants_, *p, *joinPolicy_), *p);
 
   // Actions that came since the last turn depart, percepts arrive, then actions take effect.
   for (const auto& p : participants_)
@@ -358,7 +359,8 @@ void GameControl::joinNewcomers() {
   while (!newcomers_.empty()) {
     std::unique_ptr<Participant> p = std::move(newcomers_.front());
     newcomers_.erase(newcomers_.begin());
-    if (!p->leaving() && !(hasVacant() && resume(*p))) join(std::move(p));
+    if (p->leaving()) continue;
+    if (!resume(gamecontrol::vacantFor(participants_, *p, joinPolicy_.get()), *p)) join(std::move(p));
   }
 }
 
@@ -527,72 +529,26 @@ void GameControl::loadState(StateReader& in) {
         if (IConnection* const client = tape_->connection(*port, p->seat().key)) seat(*client);
   restored_ = true;
   // The clock waits for agents that are to come back.
-  if (hasVacant() && !(tape_ && tape_->playing())) released_ = false;
+  if (gamecontrol::hasVacant(participants_) && !(tape_ && tape_->playing())) released_ = false;
   agentsChanged();
   robotsTree_.lookAgain();
 }
 
-/// A robot without a name has no way to be found by its client, which comes as a new one.
-void GameControl::dropNameless() {
-  if (!joinPolicy_) return;
-  for (const auto& p : participants_) {
-    if (!p->vacant()) continue;
-    const auto identity = p->aspect() ? Below<IAgentIdentity>().find(*p->aspect()) : nullptr;
-    if (!identity || identity->number() == 0) p->leave();
-  }
-}
-
 /// A connection of the time when the state was saved goes on with its agent. False if there is none for it.
 bool GameControl::seat(IConnection& connection) {
-  const Participant::Seat seat{connection.port().path(), connection.id()};
-  for (const auto& p : participants_)
-    if (p->vacant() && p->seat() == seat) {
-      p->connect(connection, actedAt_);
-      p->resolveParser(*this);
-      return true;
-    }
-  return false;
+  Participant* const player = gamecontrol::vacantAt(participants_, connection);
+  if (!player) return false;
+  player->connect(connection, actedAt_);
+  player->resolveParser(*this);
+  return true;
 }
 
-/// A client that names a player whose robot stands there without a client goes on as this player; where players have no
-/// names, the first one that does not wait for an agent of its own; an agent that its port has started again goes on as
-/// itself. False: it does not.
-bool GameControl::resume(Participant& client) {
-  if (!client.connection()) return false;
-  const Participant::Seat seat{client.connection()->port().path(), client.connection()->id()};
-  const auto seated = [&]() -> Participant* {
-    for (const auto& p : participants_)
-      if (!p->leaving() && p->seat() == seat && p->returns()) return p.get();
-    return nullptr;
-  };
-  const auto first = [&]() -> Participant* {
-    for (const auto& p : participants_)
-      if (p->vacant() && !p->leaving() && !p->returns()) return p.get();
-    return nullptr;
-  };
-  const auto named = [&](const Predicates& actions) -> Participant* {
-    for (const Element e : actions) {
-      if (e.head() != joinPolicy_->predicate()) continue;
-      const IJoinPolicy::Name name = joinPolicy_->read(e);
-      for (const auto& p : participants_) {
-        const auto identity =
-            p->vacant() && !p->leaving() && p->aspect() ? Below<IAgentIdentity>().find(*p->aspect()) : nullptr;
-        if (identity && identity->number() == name.number && identity->team() == name.team) return p.get();
-      }
-    }
-    return nullptr;
-  };
-  Participant* player = seated();
-  if (!player) player = joinPolicy_ ? named(client.pending()) : first();
-  if (!player && joinPolicy_) player = named(client.deferred());  // it was held back
+/// `client` goes on as `player`, which is vacant; nullptr: it does not, and the result is false.
+bool GameControl::resume(Participant* player, Participant& client) {
   if (!player) return false;
   player->takeOver(client, now());
   logInfo(fmt::format("{} is back.", player->label()));
   return true;
-}
-
-bool GameControl::hasVacant() const {
-  return std::any_of(participants_.begin(), participants_.end(), [](const auto& p) { return p->vacant(); });
 }
 
 }  // namespace spark

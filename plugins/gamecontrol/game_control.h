@@ -13,6 +13,7 @@
 #include "gamecontrol/hold.h"
 #include "gamecontrol/lockstep_gate.h"
 #include "gamecontrol/participant.h"
+#include "gamecontrol/vacancies.h"
 
 namespace spark {
 
@@ -66,9 +67,7 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
   AgentAspect& createAspect(Node& parent, const std::string& name);
   bool seat(IConnection& connection);
-  bool resume(gamecontrol::Participant& client);
-  void dropNameless();
-  bool hasVacant() const;
+  bool resume(Participant* player, Participant& client);
   template <class F>
   void forEachAspect(F f);
   void resolveParsers();
@@ -92,8 +91,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   int agentCount() const { return static_cast<int>(agents().size()); }
   std::int64_t messagesDropped() const { return messagesDropped_; }
 
-  std::vector<std::unique_ptr<Participant>> participants_;  ///< in order of number
-  std::vector<std::unique_ptr<Participant>> newcomers_;     ///< in order of arrival
+  gamecontrol::Participants participants_;  ///< in order of number
+  gamecontrol::Participants newcomers_;     ///< in order of arrival
   std::vector<std::uint64_t>
       refusedBehaviors_;                      ///< ids of behaviors for which no agent could be created; not tried again
   mutable std::vector<AgentAspect*> agents_;  ///< of participants_; a cache that agents() updates

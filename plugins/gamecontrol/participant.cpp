@@ -302,14 +302,6 @@ void Participant::greet(const Predicates& percepts) {
   message_.clear();
 }
 
-bool Participant::returns() const {
-  const AgentAspect* const robot = aspect();
-  const auto* const port =
-      vacant_ && robot && !seat_.port.empty() ? robot->kernel().root().find<Node>(seat_.port) : nullptr;
-  const IReturningAgents* const host = port ? port->as<IReturningAgents>() : nullptr;
-  return host && host->returns(seat_.key);
-}
-
 void Participant::save(StateWriter& out) const {
   if (out.keeps()) {
     StateWriter own(true);
@@ -319,7 +311,7 @@ void Participant::save(StateWriter& out) const {
     own.write(inside_ && behavior() ? behavior()->path() : "");
     // Without a connection it had none in this run: keys of an earlier one mean nothing, unless its port starts it
     // again.
-    const Seat seat = connection_ ? Seat{connection_->port().path(), connection_->id()} : returns() ? seat_ : Seat{};
+    const Seat seat = connection_ ? Seat::of(*connection_) : returns() ? seat_ : Seat{};
     own.write(seat.port);
     own.write(seat.key);
     own.write(connection_ != nullptr);
@@ -354,6 +346,8 @@ std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node
   auto out = std::make_unique<Participant>(number, robot, inside ? &root.require<Behavior>(behavior) : nullptr);
   out->seat_.port = own.readString();
   out->seat_.key = static_cast<std::uint64_t>(own.readInteger());
+  if (const Node* const port = out->seat_.port.empty() ? nullptr : root.find<Node>(out->seat_.port))
+    out->returns_ = static_cast<bool>(port->as<IReturningAgents>());
   out->wasConnected_ = own.readBool();
   out->heardFrom_ = own.readBool();
   out->hasRobot_ = own.readBool();

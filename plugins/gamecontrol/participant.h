@@ -82,12 +82,13 @@ class Participant {
     std::string port;  ///< path
     std::uint64_t key = 0;
     bool operator==(const Seat&) const = default;
+    static Seat of(IConnection& connection) { return {connection.port().path(), connection.id()}; }
   };
   const Seat& seat() const { return seat_; }
   /// True if the client was connected when the state was saved.
   bool wasConnected() const { return wasConnected_; }
-  /// True if it is vacant until its port starts its program again.
-  bool returns() const;
+  /// True if it is vacant until its port starts its program again, see IReturningAgents.
+  bool returns() const { return vacant_ && returns_; }
   /// A vacant one goes on with this connection.
   void connect(IConnection& connection, Clock::time_point now);
   /// The same, with the connection of a client that has not done anything yet. That one leaves.
@@ -240,7 +241,7 @@ class Participant {
   const bool inside_;
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false, vacant_ = false;
   Seat seat_;
-  bool wasConnected_ = false;
+  bool wasConnected_ = false, returns_ = false;
   bool turn_ = true, sendsEmpty_ = false;  ///< see setTurn()
   bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
   Given given_;

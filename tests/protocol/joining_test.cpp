@@ -1,7 +1,6 @@
 #include <catch2/catch.hpp>
 
 #include "arena.h"
-#include "spark/state.h"
 
 // How agents join a running match in lockstep: from when on the simulation waits for an agent, and which agents cannot
 // block the others.
@@ -10,36 +9,6 @@ using namespace spark;
 using namespace spark::test;
 
 namespace {
-
-/// A port that starts its agents again.
-class HostPort : public Node, public IReturningAgents {
-  SPARK_CLASS(HostPort, Node)
- public:
-  static void describe(Description<HostPort>& d) {
-    d.doc("Starts its agents again.");
-    d.implements<IReturningAgents>();
-  }
-  bool returns(std::uint64_t) const override { return again; }
-  bool again = false;
-};
-
-/// A connection of one of them.
-class HostConnection : public IConnection {
- public:
-  HostConnection(HostPort& port, std::uint64_t id) : port_(port), id_(id), name_(fmt::format("program {}", id)) {}
-  std::uint64_t id() const override { return id_; }
-  const std::string& peer() const override { return name_; }
-  Node& port() override { return port_; }
-  bool send(std::string_view) override { return true; }
-  bool idle() const override { return true; }
-  double stalledSeconds() const override { return 0; }
-  void close(std::string_view) override {}
-
- private:
-  HostPort& port_;
-  std::uint64_t id_;
-  std::string name_;
-};
 
 /// Connects and runs cycles until the agent exists.
 Client connect(Arena& a) {
@@ -535,34 +504,4 @@ TEST_CASE("Robot files must be below robotFolder") {
   // The others are of the same kind.
   REQUIRE_FALSE(a.logged("found 'robot'"));
   REQUIRE(a.control->agents()[0]->children().size() == 1);
-}
-
-TEST_CASE("An agent that its port has started again comes back to its robot, whichever other agent comes before") {
-  Arena a;
-  auto& server = *a.kernel.root().find<Node>("/sys/server/gamecontrol");
-  server.remove(*server.child("names"));  // without names any client may go on with a robot
-  a.kernel.registerClass<HostPort>();
-  auto& port = a.kernel.create<HostPort>("HostPort", "/sys/server/host");
-  auto& control = *server.as<IConnectionConsumer>();
-  HostConnection one(port, 1), other(port, 2), two(port, 3);
-  for (HostConnection* c : {&one, &two}) {
-    control.connected(*c);
-    control.received(*c, "(scene robot)");
-  }
-  for (int i = 0; i < 5; ++i) a.cycle();
-  REQUIRE(a.agents() == 2);
-  StateWriter out(true);
-  saveTree(server, out);
-  for (HostConnection* c : {&one, &two}) control.disconnected(*c);
-  StateReader in(out.bytes());
-  loadTree(server, in);
-  port.again = true;
-  // The second one was lost before the state was saved; now it is a new agent.
-  for (HostConnection* c : {&one, &other, &two}) control.connected(*c);
-  a.cycle();
-  REQUIRE(a.agents() == 3);
-  const auto programOf = [&](std::size_t agent) { return a.control->connection(*a.control->agents()[agent])->peer(); };
-  CHECK(programOf(0) == "program 1");
-  CHECK(programOf(1) == "program 3");
-  CHECK(programOf(2) == "program 2");
 }

@@ -4,6 +4,7 @@
 
 #include "../status_report.h"
 #include "../stream/messages.h"
+#include "fake_scene.h"
 #include "spark/describe.h"
 #include "test_support.h"
 
@@ -52,22 +53,6 @@ class TwoAgents : public Node, public IGameControl {
   void restoreAgent(Node&, const std::string&, int) override {}
   std::vector<AgentAspect*> all;
   IConnection *thinks = nullptr, *begins = nullptr;
-};
-
-class Line : public IConnection {
- public:
-  explicit Line(Node& port) : port_(port) {}
-  std::uint64_t id() const override { return 1; }
-  const std::string& peer() const override { return name_; }
-  Node& port() override { return port_; }
-  bool send(std::string_view) override { return true; }
-  bool idle() const override { return true; }
-  double stalledSeconds() const override { return 0; }
-  void close(std::string_view) override {}
-
- private:
-  Node& port_;
-  std::string name_ = "agent 0";
 };
 
 /// A port whose first connection has thought, and whose others have not.
@@ -147,7 +132,7 @@ TEST_CASE("think times of an agent come from the port of its connection, if that
   for (const char* name : {"inside", "thinks", "begins"})
     control.all.push_back(&match.kernel.create<AgentAspect>("AgentAspect", std::string("/usr/scene/") + name));
   auto& port = match.kernel.create<Thinkers>("Thinkers", "/sys/server/thinkers");
-  Line thinks(port), begins(port), plain(control);
+  FakeConnection thinks(port, 1), begins(port, 2), plain(control, 3);
   control.thinks = &thinks;
   control.begins = &begins;
   port.first = &thinks;

@@ -1,0 +1,27 @@
+#pragma once
+/// \file
+/// Robots of a saved state that stand there and wait for their clients.
+
+#include <memory>
+#include <vector>
+
+#include "api/match.h"
+#include "gamecontrol/participant.h"
+
+namespace spark::gamecontrol {
+
+using Participants = std::vector<std::unique_ptr<Participant>>;
+
+bool hasVacant(const Participants& participants);
+/// The vacant participant that had this connection when the state was saved; nullptr: none.
+Participant* vacantAt(const Participants& participants, IConnection& connection);
+/// The vacant participant that a client names in its actions; nullptr: none.
+Participant* vacantNamed(const Participants& participants, const Participant& client, IJoinPolicy& policy);
+/// The vacant participant as which a client that connects goes on: an agent that its port has started again as itself,
+/// another client as the player that it names; where players have no names (`policy` is nullptr), as the first one that
+/// does not wait for an agent of its own. nullptr: none.
+Participant* vacantFor(const Participants& participants, const Participant& client, IJoinPolicy* policy);
+/// Robots without a name leave: their clients cannot find them, and come as new ones.
+void dropNameless(const Participants& participants);
+
+}  // namespace spark::gamecontrol
