@@ -131,8 +131,10 @@ function agents(t)
   local server = new("GameControl", "/sys/server/gamecontrol")
   new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
   local timing = new("AgentTiming", "/sys/server/gamecontrol/timing")
-  timing.senseLatency = option{ name = "senseLatency", default = timing.senseLatency, doc = "Cycles from sensing to the arrival of percepts." }
-  timing.actLatency   = option{ name = "actLatency", default = timing.actLatency, doc = "Cycles by which actions take effect later than without latency." }
+  timing.senseLatency = option{ name = "senseLatency", default = timing.senseLatency,
+                                doc = "Cycles from sensing to the arrival of percepts." }
+  timing.actLatency   = option{ name = "actLatency", default = timing.actLatency,
+                                doc = "Cycles by which actions take effect later than without latency." }
   local framing = option{ name = "agentFraming", default = "LengthPrefixFraming",
                           doc = "How bytes become messages: LengthPrefixFraming, or LineFraming, one per line." }
   local socket  = option{ name = "agentSocket", default = "",
@@ -148,7 +150,7 @@ function spades(t)
   local database = option{ name = "agentDatabase", default = "", doc = "XML file that says which programs are agents." }
   local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: none." }
   local think    = option{ name = "thinkTime", default = "FixedThinkTime",
-                           doc = "How long agents think: FixedThinkTime, or measured: CpuThinkTime, InstructionThinkTime." }
+                           doc = "Think time: FixedThinkTime, or measured: CpuThinkTime, InstructionThinkTime." }
   local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
   local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
   local token    = option{ name = "commToken", default = "", doc = "What they must know; empty: nothing." }

@@ -10,9 +10,10 @@ include "soccer-house.lua"
 
 local types   = option{ name = "agents", default = "", doc = "Agent types of the database; \"A B\": eleven of each, with `players`." }
 local players = option{ name = "players", default = 11, doc = "Agents of each type." }
-local random  = option{ name = "randomField", default = false, doc = "As then, the field's size and the ball's mass are drawn for each match, from the seed." }
+local random  = option{ name = "randomField", default = false,
+                        doc = "As then, the size of the field and the mass of the ball are random (by the seed)." }
 local create  = option{ name = "createEffector", default = "CreateEffector",
-                        doc = "Class of the effector that gives an agent its sphere: CreateEffector, (create), or SceneEffector, (scene rsg/agent/sphere_2004.rsg)." }
+                        doc = "How an agent gets its sphere: CreateEffector by (create), SceneEffector by (scene FILE)." }
 local offside = option{ name = "offside", default = true, doc = "Offside is judged." }
 
 files() scene() materials() physics(engineOption())
@@ -25,7 +26,8 @@ plugin "sensors" plugin "effectors"
 -- the match
 local function drawn(least, most, usual) return random and least + (most - least) * math.random() or usual end
 soccerVariables {
-  FieldLength = drawn(100, 110, 105), FieldWidth = drawn(64, 75, 68), GoalWidth = 7.32, GoalDepth = 2, GoalHeight = 0.5, BorderSize = 10,
+  FieldLength = drawn(100, 110, 105), FieldWidth = drawn(64, 75, 68),
+  GoalWidth = 7.32, GoalDepth = 2, GoalHeight = 0.5, BorderSize = 10,
   PenaltyLength = 16.5, PenaltyWidth = 33, FreeKickDistance = 9.15, FreeKickMoveDist = 10,
   AgentRadius = 0.22, AgentMass = 75, AgentMaxSpeed = 10, AgentLinearDrag = 12,
   BallRadius = 0.111, BallMass = drawn(0.41, 0.45, 0.43), BallLinearDrag = 0.3, BallAngularDrag = 0.001, BallMaxSpeed = 40,

@@ -4,6 +4,8 @@
 
 #include <poll.h>
 
+#include <cerrno>
+#include <chrono>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,11 +35,20 @@ class AgentLink {
   virtual const std::string& lost() const = 0;
   /// False while it cannot be reached, though it is not lost.
   virtual bool reachable() const { return true; }
-  /// True once the program has ended. Does not wait.
-  virtual bool ended() = 0;
+  /// Appends a descriptor that is readable once the program has ended, unless it has ended already, or its server ends
+  /// it.
+  virtual void addEnd(std::vector<pollfd>& out) const = 0;
   /// Appends the descriptors to wait for.
   virtual void addDescriptors(std::vector<pollfd>& out) const = 0;
 };
+
+/// Waits until one of the descriptors is ready, or a signal comes: true, or until `end`: false.
+inline bool waitUntil(std::chrono::steady_clock::time_point end, std::vector<pollfd>& descriptors) {
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - std::chrono::steady_clock::now()).count();
+  if (left <= 0) return false;
+  const int ready = ::poll(descriptors.data(), descriptors.size(), static_cast<int>(left));
+  return ready > 0 || (ready < 0 && errno == EINTR);
+}
 
 /// True for messages that begin a think cycle.
 inline bool beginsCycle(std::string_view message) { return message.starts_with('S') || message.starts_with('T'); }

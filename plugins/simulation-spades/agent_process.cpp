@@ -31,10 +31,10 @@ class Closing {
   int descriptor_;
 };
 
-/// A way for bytes in one direction, whose ends are closed in programs that are started. A socket, unlike a pipe, can
-/// be written without a signal when nobody reads it any more.
-struct Way {
-  explicit Way(const std::array<int, 2>& ends = make()) : reads(ends[0]), writes(ends[1]) {}
+/// A pair of sockets for bytes in one direction, closed in programs that are started. Writing to a pipe raises SIGPIPE
+/// once its reader has closed it; a socket need not.
+struct SocketPair {
+  explicit SocketPair(const std::array<int, 2>& ends = make()) : reads(ends[0]), writes(ends[1]) {}
   static std::array<int, 2> make() {
     std::array<int, 2> ends;
     if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0)
@@ -58,7 +58,7 @@ std::unique_ptr<AgentLink> startAgent(const AgentType& type, int number, const s
 }
 
 AgentProcess::AgentProcess(const AgentType& type, const std::string& log) {
-  Way to, from;
+  SocketPair to, from;
   const Closing reads(copyAbove(to.reads)), writes(copyAbove(from.writes));
   program_ = std::make_unique<AgentProgram>(
       type, type.command, log, std::vector<AgentProgram::Descriptor>{{reads.get(), type.in}, {writes.get(), type.out}});

@@ -28,7 +28,7 @@ class AgentProcess final : public AgentLink {
   std::optional<Message> receive() override;
   std::string countInstructions() override { return program_->countInstructions(); }
   const std::string& lost() const override { return pipes_->lost(); }
-  bool ended() override { return program_->ended(); }
+  void addEnd(std::vector<pollfd>& out) const override { program_->addEnd(out); }
   void addDescriptors(std::vector<pollfd>& out) const override { pipes_->addDescriptors(out); }
 
  private:

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <spawn.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -67,12 +68,18 @@ AgentProgram::AgentProgram(const AgentType& type, const std::vector<std::string>
                                    arguments.data(), environ);
   if (error != 0)
     throw Error(fmt::format("cannot start '{}' in {}: {}", command.front(), type.folder, std::strerror(error)));
+  end_ = static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0));
 }
 
 AgentProgram::~AgentProgram() {
   ::kill(-pid_, SIGKILL);
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
   }
+  if (end_ >= 0) ::close(end_);
+}
+
+void AgentProgram::addEnd(std::vector<pollfd>& out) const {
+  if (!ended()) out.push_back({end_, POLLIN, 0});
 }
 
 bool AgentProgram::ended() const {

@@ -32,6 +32,8 @@ class AgentProgram {
   /// True once it has ended. Does not wait.
   bool ended() const;
   /// See AgentLink.
+  void addEnd(std::vector<pollfd>& out) const;
+  /// See AgentLink.
   std::string countInstructions();
   /// A thought begins now.
   void beginThought();
@@ -42,6 +44,7 @@ class AgentProgram {
   /// CPU time of the program and its threads so far [s]; 0 if it is unknown.
   double cpuSeconds() const;
   pid_t pid_ = -1;
+  int end_ = -1;  ///< readable once it has ended
   double cpuAtBegin_ = 0, countAtBegin_ = 0;
   std::unique_ptr<InstructionCounter> counter_;  ///< nullptr: instructions are not counted
 };

@@ -44,7 +44,7 @@ class RemoteAgent final : public AgentLink {
   }
   const std::string& lost() const override { return lost_; }
   bool reachable() const override { return server_.connected(); }
-  bool ended() override { return true; }  // its server ends it
+  void addEnd(std::vector<pollfd>&) const override {}  // its server ends it
   void addDescriptors(std::vector<pollfd>&) const override {}
 
   void put(Message message) { messages_.push_back(std::move(message)); }

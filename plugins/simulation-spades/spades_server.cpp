@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <deque>
 #include <filesystem>
-#include <thread>
 
 #include "agent_process.h"
 #include "spark/error.h"
@@ -17,23 +16,24 @@ using spades::AgentMind;
 using spades::Time;
 
 namespace {
-constexpr auto kLook = std::chrono::milliseconds(10);  // while agents end
-constexpr int kMostWait = 25;                          // ms, so that a request to stop is seen
+constexpr int kMostWait = 25;  // ms, so that a request to stop is seen
 }  // namespace
 
 /// An agent: its program, its time, and its side of the connection to the consumer.
 class SpadesServer::Agent final : public IConnection {
  public:
-  Agent(SpadesServer& server, int id, const std::string& type, const std::string& timer,
+  Agent(SpadesServer& server, int id, const std::string& type, const std::optional<spades::ThinkModel>& model,
         std::unique_ptr<spades::AgentLink> way)
-      : latencies(server.latencies_),
-        mind(latencies),
+      : mind(latencies),
         link(std::move(way)),
-        model(spades::readTimer(timer)),
-        type(type),
+        model(model),
         server_(server),
         id_(id),
-        name_(fmt::format("agent {} ({})", id, type)) {}
+        name_(fmt::format("agent {} ({})", id, type)) {
+    for (const auto& own : server.typeLatencies_)
+      if (own->type() == type) ownLatencies_ = own;
+    updateLatencies();
+  }
 
   std::uint64_t id() const override { return static_cast<std::uint64_t>(id_) + 1; }
   const std::string& peer() const override { return name_; }
@@ -57,6 +57,11 @@ class SpadesServer::Agent final : public IConnection {
     link->send("X");
   }
 
+  /// Those that it has now.
+  void updateLatencies() {
+    const TypeLatency* const own = ownLatencies_.get();
+    latencies = own ? own->latencies() : spades::Latencies{server_.senseLatency_, server_.actLatency_};
+  }
   /// Another state is loaded: nothing is on its way.
   void forget() {
     mind.forget();
@@ -67,9 +72,8 @@ class SpadesServer::Agent final : public IConnection {
   AgentMind mind;
   std::unique_ptr<spades::AgentLink> link;
   std::optional<spades::ThinkModel> model;  ///< nullopt: the server's
-  const std::string type;
-  std::deque<spades::Act> acts;  ///< on their way, in the order of their time
-  std::string lost;              ///< why; "": it takes part
+  std::deque<spades::Act> acts;             ///< on their way, in the order of their time
+  std::string lost;                         ///< why; "": it takes part
   bool connected = false, closed = false;
   Clock::time_point began{};
 
@@ -77,6 +81,7 @@ class SpadesServer::Agent final : public IConnection {
   SpadesServer& server_;
   const int id_;
   std::string name_;
+  Ref<TypeLatency> ownLatencies_;  ///< empty: those of all
 };
 
 SpadesServer::SpadesServer() = default;
@@ -102,18 +107,11 @@ void SpadesServer::describe(Description<SpadesServer>& d) {
   d.property("logs", &S::logs_)
       .ofProcess()
       .doc("Folder for what agents print: agent<n>-stdout.log and -stderr.log; empty: it is dropped.");
-  d.property("senseLatency", &S::senseLatency, &S::setSenseLatency)
-      .unit("steps")
-      .range(1, 10000)
-      .doc("Time from sensing to the arrival of the sensation at the agent.");
-  d.property("actLatency", &S::actLatency, &S::setActLatency)
-      .unit("steps")
-      .range(1, 10000)
-      .doc("Time from the end of a thought until its acts take effect.");
-  d.property("thinkTimes", &S::thinkTimes_)
+  describeLatencies(d, &S::senseLatency_, &S::actLatency_);
+  d.property("thinkTimes", &S::thinkTimes, &S::setThinkTimes)
       .doc(
           "After each cycle the agent gets K<steps>, how long it has thought. It must answer D, as agents of the time "
-          "do.");
+          "do. Set it before agents are started.");
   d.property("mostThought", &S::mostThought_)
       .unit("s")
       .min(0.01)
@@ -151,6 +149,12 @@ void SpadesServer::setConsumer(std::string path) {
   consumer_.lookAgain();
 }
 
+void SpadesServer::setThinkTimes(bool on) {
+  if (on != thinkTimes_ && stage_ != Stage::queued)
+    throw Error(fmt::format("{}.thinkTimes: its agents are started already; set it in the config", path()));
+  thinkTimes_ = on;
+}
+
 void SpadesServer::setDatabase(std::string file) {
   // Where a recording is played, no agents are started.
   types_ = file.empty() || playing() ? std::map<std::string, spades::AgentType>() : spades::readAgentDatabase(file);
@@ -166,7 +170,8 @@ void SpadesServer::queueAgents(const std::string& type, int count) {
     throw Error(fmt::format("{}: expected an agent type of the database '{}' ({}), found '{}'", path(), database_,
                             names, type));
   }
-  if (const auto known = types_.find(type); known != types_.end() && modelOf(known->second.timer).instructions)
+  if (const auto known = types_.find(type);
+      known != types_.end() && modelOf(spades::readTimer(known->second.timer)).instructions)
     if (const std::string lacks = spades::InstructionCounter::lacks(); !lacks.empty())
       throw Error(fmt::format("{}: no agents of type '{}': {}", path(), type, lacks));
   if (count < 0 || count > 1000) throw Error(fmt::format("expected 0 to 1000 agents, found {}", count));
@@ -223,12 +228,13 @@ void SpadesServer::startAgent(const std::string& type) {
   } else {
     throw Error("no communication server has this type, nor the database of the host");
   }
-  if (modelOf(timer).instructions)
+  const auto model = spades::readTimer(timer);
+  if (modelOf(model).instructions)
     if (const std::string lacks = link->countInstructions(); !lacks.empty()) {
       link->send("X");
       throw Error(lacks);
     }
-  agents_.push_back(std::make_unique<Agent>(*this, nextId_, type, timer, std::move(link)));
+  agents_.push_back(std::make_unique<Agent>(*this, nextId_, type, model, std::move(link)));
   ++nextId_;
   agents_.back()->link->send("D");
   agents_.back()->began = Clock::now();
@@ -252,18 +258,19 @@ void SpadesServer::connectAll() {
 void SpadesServer::onUnlink() {
   for (const auto& a : agents_) a->link->send("X");
   if (comm_) comm_->end();
-  const auto end = Clock::now() + std::chrono::duration<double>(shutdown_);
-  const auto runs = [](const auto& a) { return !a->link->ended(); };
-  while (Clock::now() < end && (std::any_of(agents_.begin(), agents_.end(), runs) || (comm_ && comm_->hasServers()))) {
+  const auto end = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(shutdown_));
+  while (true) {
+    std::vector<pollfd> waiting;
+    for (const auto& a : agents_) a->link->addEnd(waiting);
+    if (comm_ && comm_->hasServers()) comm_->addDescriptors(waiting);
+    if (waiting.empty() || !spades::waitUntil(end, waiting)) break;
     if (comm_) comm_->poll(away_, false);
-    std::this_thread::sleep_for(kLook);
   }
   agents_.clear();
   comm_.reset();
 }
 
 void SpadesServer::loadState(StateReader&) {
-  returns_ = true;
   for (const auto& a : agents_) a->forget();
 }
 
@@ -285,7 +292,7 @@ void SpadesServer::poll() {
   }
   heard_ = false;
   for (const auto& a : agents_) {
-    a->latencies = latenciesOf(*a);
+    a->updateLatencies();
     exchange(*a);
   }
   if (stage_ == Stage::starting) connectAll();
@@ -298,20 +305,8 @@ void SpadesServer::poll() {
   removeLost();
 }
 
-spades::Latencies SpadesServer::latenciesOf(const Agent& a) const {
-  spades::Latencies out = latencies_;
-  for (const auto& own : typeLatencies_)
-    if (own->type() == a.type) out.sense = own->sense(), out.act = own->act();
-  return out;
-}
-
-spades::ThinkModel SpadesServer::modelOf(const std::string& timer) const {
-  const auto named = spades::readTimer(timer);
+spades::ThinkModel SpadesServer::modelOf(const std::optional<spades::ThinkModel>& named) const {
   return named ? *named : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
-}
-
-spades::ThinkModel SpadesServer::modelOf(const Agent& a) const {
-  return a.model ? *a.model : thinkTime_ ? thinkTime_->model() : spades::ThinkModel();
 }
 
 /// Reads the agent's messages.
@@ -359,7 +354,7 @@ void SpadesServer::exchange(Agent& a) {
 /// Passes the next message to the agent that is due.
 void SpadesServer::deliver(Agent& a) {
   if (a.closed) return;
-  const auto message = a.mind.next(now(), modelOf(a));
+  const auto message = a.mind.next(now(), modelOf(a.model));
   if (!message) return;
   if (a.mind.model().instructions)  // its think time may be another one since it was started
     if (const std::string lacks = a.link->countInstructions(); !lacks.empty()) a.lose(lacks);

@@ -40,7 +40,6 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   void poll() override;
   bool wait(double seconds) override;
   bool ready(bool lockstep) override;
-  bool returns(std::uint64_t) const override { return returns_; }
   std::optional<AgentTimes> times(const IConnection& connection) const override;
 
  protected:
@@ -60,9 +59,8 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   void startAgent(const std::string& type);
   spades::CommPort::Server* serverFor(const std::string& type);
   void connectAll();
-  spades::Latencies latenciesOf(const Agent& agent) const;
-  spades::ThinkModel modelOf(const Agent& agent) const;
-  spades::ThinkModel modelOf(const std::string& timer) const;
+  /// The model of an agent type; `named`: that of its timer.
+  spades::ThinkModel modelOf(const std::optional<spades::ThinkModel>& named) const;
   void exchange(Agent& agent);
   void deliver(Agent& agent);
   void feed(Agent& agent);
@@ -70,20 +68,18 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   void put(Input::Kind kind, const Agent& agent, std::string_view text = {});
   void readDatabase();
   void setDatabase(std::string file);
-  void setSenseLatency(int steps) { latencies_.sense = steps; }
-  void setActLatency(int steps) { latencies_.act = steps; }
-  int senseLatency() const { return static_cast<int>(latencies_.sense); }
-  int actLatency() const { return static_cast<int>(latencies_.act); }
   int agentCount() const { return static_cast<int>(agents_.size()); }
   const std::string& database() const { return database_; }
   int port() const { return comm_ ? comm_->port() : port_; }
   void setToken(std::string token) { token_ = std::move(token); }
   void setPort(int port);
+  bool thinkTimes() const { return thinkTimes_; }
+  void setThinkTimes(bool on);
   void listen();
   const std::string& consumer() const { return consumerPath_; }
   void setConsumer(std::string path);
 
-  spades::Latencies latencies_;
+  int senseLatency_ = 10, actLatency_ = 10;
   std::string database_, logs_, consumerPath_ = "/sys/server/gamecontrol";
   bool thinkTimes_ = false;
   double mostThought_ = 10, shutdown_ = 2, away_ = 30;
@@ -97,8 +93,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   std::vector<std::unique_ptr<Agent>> agents_;  ///< in order of id
   std::vector<spades::Act> acts_;               ///< used by exchange()
   Stage stage_ = Stage::queued;
-  bool heard_ = false;    ///< something happened in this poll()
-  bool returns_ = false;  ///< a state was loaded, whose agents are those of the same ids
+  bool heard_ = false;  ///< something happened in this poll()
   int nextId_ = 0, lost_ = 0;
 
   Link<ThinkTime> thinkTime_;

@@ -34,7 +34,7 @@ class TcpAgent final : public AgentLink {
   std::optional<Message> receive() override;
   std::string countInstructions() override { return program_->countInstructions(); }
   const std::string& lost() const override { return lost_.empty() && connection_ ? connection_->lost() : lost_; }
-  bool ended() override { return program_->ended(); }
+  void addEnd(std::vector<pollfd>& out) const override { program_->addEnd(out); }
   void addDescriptors(std::vector<pollfd>& out) const override;
 
  private:

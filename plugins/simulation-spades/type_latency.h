@@ -4,30 +4,37 @@
 
 #include <string>
 
+#include "agent_mind.h"
 #include "spark/describe.h"
 #include "spark/leaf.h"
 
 namespace spark {
 
-/// A child of SpadesServer: latencies of the agents of one type, in place of those of all.
+/// Describes the two properties of a class that has latencies.
+template <class T>
+void describeLatencies(Description<T>& d, int T::*sense, int T::*act) {
+  d.property("senseLatency", sense)
+      .unit("steps")
+      .range(1, 10000)
+      .doc("Time from sensing to the arrival of the sensation at the agent.");
+  d.property("actLatency", act)
+      .unit("steps")
+      .range(1, 10000)
+      .doc("Time from the end of a thought until its acts take effect.");
+}
+
+/// A child of SpadesServer: latencies of the agents of one type, in place of those of all. It counts if it is there
+/// when they are started.
 class TypeLatency : public Leaf {
   SPARK_CLASS(TypeLatency, Leaf)
  public:
   static void describe(Description<TypeLatency>& d) {
     d.doc("Latencies of the agents of one type; a child of SpadesServer, whose own are those of all others.");
     d.property("type", &TypeLatency::type_).doc("The agent type.");
-    d.property("senseLatency", &TypeLatency::sense_)
-        .unit("steps")
-        .range(1, 10000)
-        .doc("Time from sensing to the arrival of the sensation at the agent.");
-    d.property("actLatency", &TypeLatency::act_)
-        .unit("steps")
-        .range(1, 10000)
-        .doc("Time from the end of a thought until its acts take effect.");
+    describeLatencies(d, &TypeLatency::sense_, &TypeLatency::act_);
   }
   const std::string& type() const { return type_; }
-  int sense() const { return sense_; }
-  int act() const { return act_; }
+  spades::Latencies latencies() const { return {sense_, act_}; }
 
  private:
   std::string type_;

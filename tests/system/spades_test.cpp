@@ -40,6 +40,16 @@ struct OldMatch {
                   arguments);
   }
   Finished play() const { return runToEnd(joined(command(), {"--set", "agentDatabase=" + database()})); }
+  /// The match with the agents under a communication server: its result, and the host's log.
+  std::pair<Json, std::string> underServer() const {
+    Process host(joined(command(), {"--set", "commPort=0", "--set", "commServers=1"}));
+    const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
+    Process server({program("sparkcomm"), "--port", port, "--database", database()});
+    const Json result = Json::parse(host.line());
+    REQUIRE(host.wait() == 0);
+    REQUIRE(server.wait() == 0);
+    return {result, host.errors()};
+  }
   Json result() {
     const Finished f = play();
     CAPTURE(f.errors);
@@ -156,31 +166,18 @@ TEST_CASE("Teams made for plain TCP play under SPADES, in the host and under a c
   REQUIRE(reference["agentsSeen"] == 8);
   REQUIRE(reference["playMode"] == "PlayOn");
   REQUIRE(m.result()["stateHash"] == reference["stateHash"]);
-  for (const char* option : {"commPort=0", "commServers=1"}) m.arguments.insert(m.arguments.end(), {"--set", option});
-  Process host(m.command());
-  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
-  Process server({program("sparkcomm"), "--port", port, "--database", m.database()});
-  const Json result = Json::parse(host.line());
-  REQUIRE(host.wait() == 0);
-  REQUIRE(server.wait() == 0);
-  REQUIRE(result["stateHash"] == reference["stateHash"]);
+  REQUIRE(m.underServer().first["stateHash"] == reference["stateHash"]);
 }
 
 TEST_CASE("Agents of a communication server are not started with think time in instructions, and it says why") {
   OldMatch m;
   m.timer = "default";
   m.seconds = 1;
-  m.arguments = {"--set", "commPort=0", "--set", "commServers=1", "--set", "thinkTime=InstructionThinkTime"};
-  Process host(m.command());
-  const std::string port = std::to_string(Json::parse(host.line())["commPort"].get<int>());
-  Process server({program("sparkcomm"), "--port", port, "--database", m.database()});
-  const Json result = Json::parse(host.line());
-  REQUIRE(host.wait() == 0);
-  REQUIRE(server.wait() == 0);
+  m.arguments = {"--set", "thinkTime=InstructionThinkTime"};
+  const auto [result, log] = m.underServer();
   CHECK(result["agentsSeen"] == 0);
-  CHECK_THAT(host.errors(),
-             Contains("no more agents of type 'blue' are started: communication servers measure CPU time, "
-                      "not instructions; use CpuThinkTime, or the timer 'jiffies', instead"));
+  CHECK_THAT(log, Contains("no more agents of type 'blue' are started: communication servers measure CPU time, "
+                           "not instructions; use CpuThinkTime, or the timer 'jiffies', instead"));
 }
 
 TEST_CASE("A communication server that is killed takes its agents with it, and the match goes on") {

@@ -165,9 +165,11 @@ void CommServer::wait() const {
 void CommServer::endAgents() {
   for (const auto& [id, agent] : agents_) agent->send("X");
   const auto end = Clock::now() + kEnd;
-  const auto runs = [](const auto& a) { return !a.second->ended(); };
-  while (Clock::now() < end && std::any_of(agents_.begin(), agents_.end(), runs))
-    std::this_thread::sleep_for(kRetry / 10);
+  while (true) {
+    std::vector<pollfd> running;
+    for (const auto& [id, agent] : agents_) agent->addEnd(running);
+    if (running.empty() || !waitUntil(end, running)) break;
+  }
   agents_.clear();
 }
 

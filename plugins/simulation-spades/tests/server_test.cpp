@@ -1,15 +1,19 @@
+#include <poll.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <fstream>
-#include <thread>
 
 #include "../instruction_counter.h"
 #include "api/agents.h"
 #include "api/net.h"
 #include "api/phases.h"
+#include "patience.h"
 #include "temporary_folder.h"
 #include "test_support.h"
 
@@ -126,6 +130,9 @@ TEST_CASE("An agent is informed how long it has thought, and plays as without th
     int informed = 0;
     for (; std::getline(log, text); ++informed) REQUIRE(text == "K3");
     REQUIRE((thinkTimes ? informed >= 10 : informed == 0));
+    f.set("/sys/server/spades", "thinkTimes", thinkTimes);
+    REQUIRE_THROWS_WITH(f.set("/sys/server/spades", "thinkTimes", !thinkTimes),
+                        Catch::Contains("its agents are started already"));
     REQUIRE(f.linesWith("(drive").size() == 14);
     return f.listener->lines;
   };
@@ -199,25 +206,21 @@ TEST_CASE("The acts of an agent that ends after its thought take effect, and it 
 }
 
 TEST_CASE("What an agent has started ends with it") {
-  pid_t child = 0;
+  pollfd ends{-1, POLLIN, 0};
   {
     Field f(Field::Types{{"forks", "Bad fork"}});
     f.run(30);
     std::ifstream log(f.folder.file("logs/agent0-stdout.log"));
+    pid_t child = 0;
     for (std::string word; log >> word && child == 0;)
       if (word.starts_with("child=")) child = std::stoi(word.substr(6));
     REQUIRE(child > 0);
-    REQUIRE(::kill(child, 0) == 0);
+    ends.fd = static_cast<int>(::syscall(SYS_pidfd_open, child, 0));
+    REQUIRE(ends.fd >= 0);
+    REQUIRE(::poll(&ends, 1, 0) == 0);  // it runs
   }
-  // A signal arrives when the process next runs, and it is a zombie until its new parent looks.
-  const auto lives = [&child] {
-    std::ifstream status("/proc/" + std::to_string(child) + "/stat");
-    std::string text;
-    std::getline(status, text);
-    return !text.empty() && text.find(") Z") == std::string::npos && text.find(") X") == std::string::npos;
-  };
-  for (int i = 0; i < 6000 && lives(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
-  REQUIRE_FALSE(lives());
+  REQUIRE(::poll(&ends, 1, static_cast<int>(std::chrono::milliseconds(kPatience).count())) == 1);
+  ::close(ends.fd);
 }
 
 TEST_CASE("A program made for plain TCP plays: its messages are acts, and (syn) ends its thought") {
