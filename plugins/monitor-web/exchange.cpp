@@ -17,6 +17,11 @@ Exchange::Exchange() : wakeupFd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
 
 Exchange::~Exchange() { close(wakeupFd_); }
 
+void Exchange::handOver() {
+  ready.store(wanted.exchange(nullptr, std::memory_order_acquire), std::memory_order_release);
+  wake();
+}
+
 void Exchange::wake() {
   const std::uint64_t one = 1;
   // The write fails only if the counter is full, and then the descriptor is readable already.

@@ -4,10 +4,11 @@
 ///
 ///     simulation thread                                 I/O thread
 ///     WebMonitor, publish phase   ◄── wanted ─────────  ViewerHub: a lane is due, or a time of the history
-///           └─ fills it ──────────── ready ──► wake ──► encodes, sends, requests the next one
+///           └─ fills it ──────────── ready ──► wake ──► encodes, sends, requests the next ones
 ///     RequestQueue, between cycles ◄─ requests ───────  viewers' requests
 ///           └─ within its budget ─── replies ─► wake ─► to the viewer that sent the request
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -51,28 +52,45 @@ struct SimulationReply {
   std::vector<std::uint64_t> viewers{};  ///< updates: the recipients, if there are several; then `viewer` is unused
 };
 
+/// Snapshots that are handed over together. Those of the history are not urgent, and to wake a thread for each one
+/// would cost more than to fill it. Belongs to one thread at a time.
+struct SnapshotBatch {
+  static constexpr double kAnyTime = std::numeric_limits<double>::lowest();
+  std::array<Snapshot, 8> snapshots;
+  std::size_t filled = 0;  ///< how many of them are
+  // Set by the I/O thread before it requests the snapshots.
+  double due = kAnyTime;         ///< s, simulated time from which the next one is to be filled
+  double interval = 0;           ///< s, simulated, from one to the next
+  std::uint64_t knownShape = 0;  ///< shape of the last description that it got
+  bool describe = true;          ///< false: it wants no description now
+
+  /// True if there is nothing to wait for: all are filled, or the scene has changed.
+  bool complete() const {
+    return filled == snapshots.size() || (filled > 0 && snapshots[filled - 1].shape != knownShape);
+  }
+};
+
 /// Owned by the WebServer; must outlive the users on both threads.
 class Exchange {
  public:
-  static constexpr double kNow = std::numeric_limits<double>::lowest();
   /// Throws Error if the process has no file descriptor left.
   Exchange();
   ~Exchange();
   Exchange(const Exchange&) = delete;
   Exchange& operator=(const Exchange&) = delete;
 
-  std::atomic<Snapshot*> wanted{nullptr};  ///< lent to the simulation thread, which fills it
-  std::atomic<Snapshot*> ready{nullptr};   ///< filled, on its way back to the I/O thread
-  /// Simulated time from which `wanted` is to be filled [s]; kNow: with the next frame.
-  std::atomic<double> wantedFrom{kNow};
+  std::atomic<SnapshotBatch*> wanted{nullptr};  ///< lent to the simulation thread, which fills it
+  std::atomic<SnapshotBatch*> ready{nullptr};   ///< filled, on its way back to the I/O thread
+  /// A viewer waits: `wanted` is to be handed over with the next frame, whatever its time.
+  std::atomic<bool> urgent{false};
   std::atomic<bool> watched{false};     ///< frames are sent or kept, so events are collected
   Mailbox<SimulationRequest> requests;  ///< I/O thread to simulation thread
   Mailbox<SimulationReply> replies;     ///< simulation thread to I/O thread
 
   /// True if the next frame is wanted, whatever its time.
-  bool wantsNow() const {
-    return wanted.load(std::memory_order_acquire) && wantedFrom.load(std::memory_order_relaxed) == kNow;
-  }
+  bool wantsNow() const { return wanted.load(std::memory_order_acquire) && urgent.load(std::memory_order_relaxed); }
+  /// Gives the batch that is wanted back to the I/O thread. Simulation thread only.
+  void handOver();
   /// Wakes the I/O thread. Any thread; does not block.
   void wake();
   /// The eventfd that wake() makes readable; a reader consumes eight bytes. Owned by this object.

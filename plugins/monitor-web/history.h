@@ -23,6 +23,8 @@ class History {
 
   /// Simulated time from which the next snapshot is wanted [s].
   double due() const { return builder_.due(); }
+  /// Least simulated time from one snapshot to the next [s].
+  double interval() const { return builder_.interval(); }
   /// Starts a scene; its frames follow. `message`: as sceneMessage() writes it.
   void takeScene(std::uint32_t shape, std::string_view message);
   /// Takes the events of a snapshot and, if it is due, its frame. A time before that of the last frame clears the

@@ -192,8 +192,8 @@ void ViewerHub::enqueue(Viewer& viewer, SimulationRequest request) {
 
 void ViewerHub::collect(Clock::time_point now) {
   if (exchange_.ready.exchange(nullptr, std::memory_order_acquire)) {
-    snapshotLent_ = false;
-    takeSnapshot(now);
+    batchLent_ = false;
+    takeBatch(now);
   }
   if (!exchange_.replies.empty()) takeReplies();
 }
@@ -242,59 +242,69 @@ void ViewerHub::multicast(SimulationReply reply) {
     if (Viewer* viewer = find(id)) viewer->send(message);
 }
 
-void ViewerHub::takeSnapshot(Clock::time_point now) {
-  if (snapshot_.scene) takeScene(now);
-  sendEnvironment(now);
-  if (snapshot_.shape != shape_) return;  // the scene changed again and is not described yet
-  toggles_.update(snapshot_.visible);
-  if (keepsHistory()) history_->take(snapshot_, shapeNumber_, toggles_.nodes());
+/// The history takes all snapshots, viewers get the newest one.
+void ViewerHub::takeBatch(Clock::time_point now) {
+  bool described = false;
+  for (std::size_t i = 0; i < batch_.filled; ++i) described = takeSnapshot(batch_.snapshots[i], now);
+  if (!described) return;
+  const Snapshot& newest = batch_.snapshots[batch_.filled - 1];
   for (std::size_t i = 0; i < lanes_.size(); ++i) {
     Lane& lane = lanes_[i];
-    if (lane.viewers > 0 && now >= lane.due - toleranceOf(lane.rate)) sendLane(i, now);
+    if (lane.viewers > 0 && now >= lane.due - toleranceOf(lane.rate)) sendLane(i, newest, now);
   }
 }
 
-void ViewerHub::takeScene(Clock::time_point now) {
-  shape_ = snapshot_.shape;
-  scene_ = std::make_shared<const std::string>(sceneMessage(snapshot_, ++shapeNumber_, assets_.links()));
-  sceneAt_ = now;
-  if (keepsHistory()) history_->takeScene(shapeNumber_, *scene_);
-  snapshot_.scene.reset();
-  toggles_.begin(snapshot_.visible);
+/// Returns false if its scene changed again and is not described yet.
+bool ViewerHub::takeSnapshot(Snapshot& snapshot, Clock::time_point now) {
+  if (snapshot.scene) takeScene(snapshot, now);
+  sendEnvironment(snapshot, now);
+  if (snapshot.shape != shape_) return false;
+  toggles_.update(snapshot.visible);
+  if (keepsHistory()) history_->take(snapshot, shapeNumber_, toggles_.nodes());
+  return true;
 }
 
-void ViewerHub::sendEnvironment(Clock::time_point now) {
+void ViewerHub::takeScene(Snapshot& snapshot, Clock::time_point now) {
+  shape_ = snapshot.shape;
+  scene_ = std::make_shared<const std::string>(sceneMessage(snapshot, ++shapeNumber_, assets_.links()));
+  sceneAt_ = now;
+  if (keepsHistory()) history_->takeScene(shapeNumber_, *scene_);
+  snapshot.scene.reset();
+  toggles_.begin(snapshot.visible);
+}
+
+void ViewerHub::sendEnvironment(const Snapshot& snapshot, Clock::time_point now) {
   // Entries that changed. Viewers without a scene get all entries together with it.
   const bool always = now >= alwaysDue_;
   if (always) alwaysDue_ = now + kMinAlwaysInterval;
-  if (std::string changes = environment_.update(snapshot_, always); !changes.empty()) {
+  if (std::string changes = environment_.update(snapshot, always); !changes.empty()) {
     const Message message = textMessage(std::move(changes));
     for (const auto& [id, viewer] : viewers_)
       if (viewer->shape != 0) viewer->send(message);
   }
   // Events.
   std::size_t i = 0;
-  for (const Element event : snapshot_.events) broadcast(eventMessage(snapshot_.eventTimes[i++], event));
+  for (const Element event : snapshot.events) broadcast(eventMessage(snapshot.eventTimes[i++], event));
 }
 
-void ViewerHub::sendLane(std::size_t index, Clock::time_point now) {
+void ViewerHub::sendLane(std::size_t index, const Snapshot& snapshot, Clock::time_point now) {
   Lane& lane = lanes_[index];
   const Clock::duration period = periodOf(lane.rate);
   lane.due = std::max(lane.due + period, now + period / 2);
-  lane.encoder.advance({shapeNumber_, snapshot_.time, snapshot_.transforms, snapshot_.visible, toggles_.nodes()});
+  lane.encoder.advance({shapeNumber_, snapshot.time, snapshot.transforms, snapshot.visible, toggles_.nodes()});
   lane.key.reset();
   lane.delta.reset();
   for (const auto& [id, viewer] : viewers_)
-    if (viewer->lane == index) sendFrame(*viewer, lane);
+    if (viewer->lane == index) sendFrame(*viewer, lane, snapshot);
 }
 
-void ViewerHub::sendFrame(Viewer& viewer, Lane& lane) {
+void ViewerHub::sendFrame(Viewer& viewer, Lane& lane, const Snapshot& snapshot) {
   // It skips this frame while an earlier one is queued, so the next delta is useless to it.
   if (viewer.lags()) {
     viewer.needsKey = true;
     return;
   }
-  if (viewer.shape != shape_) sendScene(viewer);
+  if (viewer.shape != shape_) sendScene(viewer, snapshot);
   const bool key = viewer.needsKey || !lane.encoder.hasDelta();
   auto& bytes = key ? lane.key : lane.delta;
   if (!bytes) bytes = std::make_shared<const std::string>(key ? lane.encoder.key() : lane.encoder.delta());
@@ -302,9 +312,9 @@ void ViewerHub::sendFrame(Viewer& viewer, Lane& lane) {
   viewer.send({Message::Kind::frame, bytes});
 }
 
-void ViewerHub::sendScene(Viewer& viewer) {
+void ViewerHub::sendScene(Viewer& viewer, const Snapshot& snapshot) {
   viewer.send({Message::Kind::scene, scene_});
-  if (viewer.shape == 0) viewer.sendText(fullEnvironmentMessage(snapshot_));
+  if (viewer.shape == 0) viewer.sendText(fullEnvironmentMessage(snapshot));
   viewer.shape = shape_;
   viewer.needsKey = true;
 }
@@ -318,13 +328,15 @@ Clock::time_point ViewerHub::requestSnapshot(Clock::time_point now) {
   for (const Lane& lane : lanes_)
     if (lane.viewers > 0) first = std::min(first, lane.due - toleranceOf(lane.rate));
   const bool due = first <= now;
-  if (due) exchange_.wantedFrom.store(Exchange::kNow, std::memory_order_relaxed);
-  if (!snapshotLent_ && (due || keepsHistory())) {
-    if (!due) exchange_.wantedFrom.store(history_->due(), std::memory_order_relaxed);
-    snapshot_.knownShape = shape_;
-    snapshot_.describe = now - sceneAt_ >= kMinSceneInterval;
-    snapshotLent_ = true;
-    exchange_.wanted.store(&snapshot_, std::memory_order_release);
+  if (due || !batchLent_) exchange_.urgent.store(due, std::memory_order_relaxed);
+  if (!batchLent_ && (due || keepsHistory())) {
+    batch_.filled = 0;
+    batch_.due = keepsHistory() ? history_->due() : SnapshotBatch::kAnyTime;
+    batch_.interval = keepsHistory() ? history_->interval() : 0;
+    batch_.knownShape = shape_;
+    batch_.describe = now - sceneAt_ >= kMinSceneInterval;
+    batchLent_ = true;
+    exchange_.wanted.store(&batch_, std::memory_order_release);
   }
   return due ? Clock::time_point::max() : first;
 }

@@ -7,7 +7,8 @@
 /// resumes with a key frame.
 ///
 /// The hub requests a snapshot from the simulation thread shortly before the next lane is due, and whenever simulated
-/// time has advanced enough for the history's next frame. Without viewers and history it requests none.
+/// time has advanced enough for the history's next frame. Without viewers and history it requests none. Those that only
+/// the history wants come several at once.
 
 #include <functional>
 #include <map>
@@ -95,13 +96,14 @@ class ViewerHub {
   void sendOutline(Viewer& viewer, std::int64_t id);
   void enqueue(Viewer& viewer, SimulationRequest request);
 
-  void takeSnapshot(Clock::time_point now);
-  void takeScene(Clock::time_point now);
-  void sendEnvironment(Clock::time_point now);
-  void sendLane(std::size_t lane, Clock::time_point now);
-  void sendFrame(Viewer& viewer, Lane& lane);
-  void sendScene(Viewer& viewer);
+  bool takeSnapshot(Snapshot& snapshot, Clock::time_point now);
+  void takeScene(Snapshot& snapshot, Clock::time_point now);
+  void sendEnvironment(const Snapshot& snapshot, Clock::time_point now);
+  void sendLane(std::size_t lane, const Snapshot& snapshot, Clock::time_point now);
+  void sendFrame(Viewer& viewer, Lane& lane, const Snapshot& snapshot);
+  void sendScene(Viewer& viewer, const Snapshot& snapshot);
 
+  void takeBatch(Clock::time_point now);
   void takeReplies();
   void completeRequest(Viewer& viewer);
   void takeStatus(std::string text);
@@ -119,8 +121,8 @@ class ViewerHub {
   std::map<std::uint64_t, std::shared_ptr<Viewer>> viewers_;  ///< by id, which is the order of arrival
   std::vector<Lane> lanes_;                                   ///< lanes without viewers stay for reuse
 
-  Snapshot snapshot_;                         ///< not to be touched while `snapshotLent_`
-  bool snapshotLent_ = false;                 ///< the simulation thread has it
+  SnapshotBatch batch_;                       ///< not to be touched while `batchLent_`
+  bool batchLent_ = false;                    ///< the simulation thread has it
   std::shared_ptr<const std::string> scene_;  ///< the scene message
   std::uint64_t shape_ = 0;                   ///< MonitorFrame::shape of `scene_`
   std::uint32_t shapeNumber_ = 0;             ///< the same in messages: counts from 1

@@ -39,19 +39,19 @@ void WebMonitor::take(const NewestFrame& newest, IMonitorEncoder*, const Event& 
 
 void WebMonitor::takeAgain() {
   web::Exchange* exchange = this->exchange();
-  if (!newest_ || !exchange || !exchange->wanted.load(std::memory_order_acquire)) return;
-  const bool setBack = time_ < takenTime_;
-  if (time_ < exchange->wantedFrom.load(std::memory_order_relaxed) && !setBack) return;
+  web::SnapshotBatch* batch = exchange ? exchange->wanted.load(std::memory_order_acquire) : nullptr;
+  if (!newest_ || !batch) return;
+  const bool urgent = exchange->urgent.load(std::memory_order_relaxed), setBack = time_ < takenTime_;
+  if (!urgent && !setBack && time_ < batch->due) return;
   if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // its pointers may dangle
-  web::Snapshot* snapshot = exchange->wanted.exchange(nullptr, std::memory_order_acquire);
-  if (!snapshot) return;
   takenTime_ = time_;
-  fill(*newest_, time_, *snapshot);
-  exchange->ready.store(snapshot, std::memory_order_release);
-  exchange->wake();
+  fill(*newest_, time_, *batch);
+  if (urgent || batch->complete()) exchange->handOver();
 }
 
-void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out) {
+void WebMonitor::fill(const NewestFrame& newest, double time, web::SnapshotBatch& batch) {
+  web::Snapshot& out = batch.snapshots[batch.filled++];
+  batch.due = time + batch.interval;
   web::copyFrame(newest, time, out);
   eventTimes_.resize(eventCount_, time);  // of events that came between frames, as when a monitor connects
   std::swap(out.events, events_);
@@ -59,7 +59,7 @@ void WebMonitor::fill(const NewestFrame& newest, double time, web::Snapshot& out
   events_.clear();
   eventTimes_.clear();
   eventCount_ = 0;
-  if (out.shape != out.knownShape && out.describe) out.scene = web::describeScene(newest.frame);
+  if (out.shape != batch.knownShape && batch.describe) out.scene = web::describeScene(newest.frame);
 }
 
 }  // namespace spark

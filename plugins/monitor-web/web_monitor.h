@@ -8,7 +8,7 @@
 
 namespace spark {
 
-/// A child of the monitor server. Copies the newest frame when the I/O thread requests one; otherwise it costs two
+/// A child of the monitor server. Copies the newest frame when the I/O thread wants it; otherwise it costs two
 /// atomic loads per cycle. It has no state: watching does not change the simulation.
 class WebMonitor : public Node, public IFrameTaker {
   SPARK_CLASS(WebMonitor, Node)
@@ -24,7 +24,7 @@ class WebMonitor : public Node, public IFrameTaker {
 
  private:
   web::Exchange* exchange() const { return server_ ? &server_->exchange() : nullptr; }
-  void fill(const NewestFrame& newest, double time, web::Snapshot& out);
+  void fill(const NewestFrame& newest, double time, web::SnapshotBatch& batch);
 
   Link<WebServer> server_;
   Predicates events_;               ///< since the last snapshot

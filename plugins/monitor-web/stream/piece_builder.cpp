@@ -42,7 +42,9 @@ std::string sceneHead(std::uint32_t shape, Packing packing) {
 
 double PieceBuilder::newest() const { return growing_ ? growing_->to : std::numeric_limits<double>::lowest(); }
 
-double PieceBuilder::due() const { return growing_ ? growing_->to + interval_ - kTolerance : newest(); }
+double PieceBuilder::interval() const { return interval_ - kTolerance; }
+
+double PieceBuilder::due() const { return growing_ ? growing_->to + interval() : newest(); }
 
 void PieceBuilder::addEvents(const Snapshot& snapshot) {
   if (!growing_) return;

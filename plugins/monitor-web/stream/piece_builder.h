@@ -42,6 +42,8 @@ class PieceBuilder {
   /// `interval`: simulated time between two frames [s].
   explicit PieceBuilder(double interval = kInterval) : interval_(interval) {}
 
+  /// Least simulated time from one frame to the next [s].
+  double interval() const;
   /// Simulated time from which the next frame is wanted [s]; the lowest number if there is none yet.
   double due() const;
   /// Simulated time of the last frame [s]; the lowest number if there is none.

@@ -55,12 +55,8 @@ struct Snapshot {
   std::vector<EntryKey> keys;      ///< one per entry of `environment`
   Predicates events;               ///< `once` entries since the last snapshot
   std::vector<double> eventTimes;  ///< s, simulated; one per event
-  /// Description of `shape`; made only if `shape` differs from `knownShape` and `describe` is set, otherwise nullptr.
+  /// Description of `shape`, if the I/O thread does not have it and wants it; otherwise nullptr.
   std::shared_ptr<const SceneDescription> scene;
-
-  // Set by the I/O thread before it requests the snapshot.
-  std::uint64_t knownShape = 0;  ///< shape of the last description that it got
-  bool describe = true;          ///< false: it wants no description now
 };
 
 }  // namespace spark::web

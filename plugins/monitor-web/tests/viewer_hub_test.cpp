@@ -61,12 +61,13 @@ struct HubFixture {
     hub.onConnect(viewer, now);
     return viewer;
   }
-  /// 40 ms later: gives the hub a frame; false if it requests none.
+  /// 40 ms later: a frame for the hub; false if it requests none.
   bool frame() {
     now += milliseconds(40);
     hub.tick(now);
-    Snapshot* s = exchange.wanted.exchange(nullptr);
-    if (!s) return false;
+    SnapshotBatch* batch = exchange.wanted;
+    if (!batch) return false;
+    Snapshot* s = &batch->snapshots[batch->filled++];
     ++frames;
     s->shape = shape;
     s->time = 0.04 * frames;
@@ -79,11 +80,12 @@ struct HubFixture {
     s->environment.put(EnvPolicy::always, "time", 0.04 * frames);
     s->environment.put(EnvPolicy::change, "play_mode", mode);
     s->keys = {{}, {}, {1, static_cast<std::uint64_t>(mode)}};
-    if (s->shape != s->knownShape && s->describe) s->scene = scene;
+    if (s->shape != batch->knownShape && batch->describe) s->scene = scene;
     s->events.clear();
     s->eventTimes.clear();
     if (foul) s->events.open("foul").add(std::exchange(foul, 0)).close(), s->eventTimes.push_back(s->time);
-    exchange.ready.store(s);
+    if (!exchange.urgent && !batch->complete()) return true;
+    exchange.handOver();
     hub.collect(now);
     return true;
   }
@@ -290,16 +292,29 @@ TEST_CASE("Only a viewer with the token may give commands, and one that guesses 
   CHECK_THAT(guesser->why, Contains("wrong tokens"));
 }
 
-TEST_CASE("With a history, frames are requested by simulated time, also without viewers") {
+TEST_CASE("With a history, frames are requested by simulated time, several at once, also without viewers") {
   HubFixture t(60);
   CHECK(t.exchange.watched);
   t.hub.tick(t.now);
-  CHECK(t.exchange.wanted.load() != nullptr);
-  CHECK(t.exchange.wantsNow());
+  REQUIRE(t.exchange.wanted.load() != nullptr);
+  CHECK(t.exchange.wanted.load()->due < 0);
+  REQUIRE(t.frame());  // a new scene
+  t.hub.tick(t.now);
+  SnapshotBatch* batch = t.exchange.wanted;
+  REQUIRE(batch != nullptr);
+  CHECK(batch->due == Approx(0.12));
+  CHECK(batch->interval == Approx(0.08).epsilon(1e-4));
+  for (std::size_t i = 1; i < batch->snapshots.size(); ++i) {
+    REQUIRE(t.frame());
+    CHECK(t.exchange.wanted.load() == batch);
+    CHECK(batch->filled == i);
+  }
   REQUIRE(t.frame());
+  CHECK(t.exchange.wanted.load() == nullptr);
   t.hub.tick(t.now);
   CHECK_FALSE(t.exchange.wantsNow());
-  CHECK(t.exchange.wantedFrom == Approx(0.12));
+  CHECK(batch->filled == 0);
+  CHECK(batch->due == Approx(0.04 + 0.08 * 4 + 0.08));
   auto viewer = t.enter();
   t.hub.tick(t.now);
   CHECK(t.exchange.wantsNow());
@@ -307,12 +322,31 @@ TEST_CASE("With a history, frames are requested by simulated time, also without 
   CHECK(t.exchange.watched);
 }
 
+TEST_CASE("A viewer that comes gets the newest frame, and every event that has not been handed over") {
+  HubFixture t(60);
+  REQUIRE(t.frame());
+  for (int i = 1; i <= 3; ++i) {
+    t.foul = i;
+    REQUIRE(t.frame());
+  }
+  auto viewer = t.enter();
+  REQUIRE(t.frame());
+  viewer->takeAll();
+  CHECK(count(viewer->said, "foul") == 3);
+  CHECK(viewer->frames == 1);
+  FrameReader reader(2);
+  reader.take(viewer->lastFrame);
+  CHECK(reader.time == Approx(0.2));
+}
+
 TEST_CASE("A viewer gets any piece of the past, its scene, and an outline") {
   HubFixture t(60);
-  for (int i = 0; i < 300; ++i) REQUIRE(t.frame());
+  for (int i = 0; i < 299; ++i) REQUIRE(t.frame());
   t.mode = 4;
   t.frame();
   auto viewer = t.enter();
+  viewer->takeAll();
+  t.frame();
   const auto ask = [&](const std::string& message) {
     viewer->said.clear();
     viewer->lastPast.clear();
