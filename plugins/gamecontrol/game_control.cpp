@@ -240,7 +240,8 @@ void GameControl::act(const Event& event) {
   lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
-  if (std::exchange(restored_, false) && joinPolicy_)
+  const bool restored = std::exchange(restored_, false);
+  if (restored && joinPolicy_)
     gamecontrol::dropNameless(participants_);  // now, as names are part of the state of what follows in the tree
   removeLeaving();
   joinBehaviors();
@@ -252,6 +253,8 @@ void GameControl::act(const Event& event) {
   else
     --cyclesToTurn_;
   resolveRobots();
+  if (restored && gamecontrol::hasVacant(participants_) && !(tape_ && tape_->playing()))
+    logInfo(gamecontrol::reportOfVacant(participants_));
 }
 
 void GameControl::takeTurn(const Event& event) {

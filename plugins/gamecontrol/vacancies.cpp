@@ -1,5 +1,7 @@
 #include "gamecontrol/vacancies.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace spark::gamecontrol {
@@ -51,6 +53,24 @@ Participant* vacantFor(const Participants& participants, const Participant& clie
   if (connection->port().as<IReturningAgents>()) return vacantAt(participants, *connection);
   if (policy) return vacantNamed(participants, client, *policy);
   return firstVacant(participants, [](const Participant& p) { return !p.returns(); });
+}
+
+std::string reportOfVacant(const Participants& participants) {
+  constexpr std::size_t kMostNames = 22;
+  std::vector<std::string> names;
+  for (const auto& p : participants) {
+    if (!p->vacant() || p->leaving()) continue;
+    const IAgentIdentity* const identity = identityOf(*p);
+    names.push_back(identity && identity->number() > 0 ? fmt::format("{} {}", identity->team(), identity->number())
+                                                       : p->label());
+  }
+  const std::size_t count = names.size(), more = count > kMostNames ? count - kMostNames : 0;
+  names.resize(count - more);
+  return fmt::format(
+      "Nobody plays {} of the robots: {}{}. Their agents can come back at any time; with --expect {} the "
+      "clock waits for them.",
+      count, fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "",
+      std::count_if(participants.begin(), participants.end(), [](const auto& p) { return !p->inside(); }));
 }
 
 void dropNameless(const Participants& participants) {

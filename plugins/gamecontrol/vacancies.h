@@ -3,6 +3,7 @@
 /// Robots of a saved state that stand there and wait for their clients.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "api/match.h"
@@ -21,6 +22,8 @@ Participant* vacantNamed(const Participants& participants, const Participant& cl
 /// another client as the player that it names; where players have no names (`policy` is nullptr), as the first one that
 /// does not wait for an agent of its own. nullptr: none.
 Participant* vacantFor(const Participants& participants, const Participant& client, IJoinPolicy* policy);
+/// Which robots wait for their clients, and what to do, for the log.
+std::string reportOfVacant(const Participants& participants);
 /// Robots without a name leave: their clients cannot find them, and come as new ones.
 void dropNameless(const Participants& participants);
 

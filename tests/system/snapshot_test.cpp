@@ -269,6 +269,9 @@ TEST_CASE("In a full game whose players have no names, clients go on as those wh
     return host.errors();
   };
   fight({"--config", "sumo.lua", "--set", "players=0", "--sync", "--record", file});
+  const Finished alone = runToEnd({program("sparkhost"), "--from", file, "--duration", "30", "--rate", "max",
+                                   "--agent-port", "0", "--monitor-port", "0", "--web-port", "0"});
+  CHECK_THAT(alone.errors, Contains("Nobody plays 2 of the robots: agent 1, agent 2.") && Contains("--expect 2"));
   const std::string log = fight({"--from", file, "--record", again});
   CHECK_THAT(log,
              Contains("agent 1 (127.0.0.1") && Contains("is back") && !Contains("maxAgents") && !Contains("joins"));
