@@ -51,8 +51,8 @@ void ActionQueue::releaseHeldBack() {
 }
 
 void ActionQueue::save(StateWriter& out) const {
-  out.write(Value(toList(pending_)));
-  out.write(Value(toList(deferred_)));
+  savePredicates(pending_, out);
+  savePredicates(deferred_, out);
 }
 
 void ActionQueue::load(StateReader& in) {
@@ -70,11 +70,6 @@ void ActionQueue::loadHold(StateReader& in) {
   skipNext_ = in.readBool();
   holdingBack_ = in.readBool();
   first_ = in.readString();
-}
-
-void loadPredicates(StateReader& in, Predicates& to) {
-  to.clear();
-  spark::append(in.readValue().toList(), to);
 }
 
 }  // namespace spark::gamecontrol

@@ -78,7 +78,4 @@ class ActionQueue {
   std::string first_;  ///< head of the actions that are not held back
 };
 
-/// Replaces `to` by a list of predicates that was saved with toList().
-void loadPredicates(StateReader& in, Predicates& to);
-
 }  // namespace spark::gamecontrol

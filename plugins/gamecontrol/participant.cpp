@@ -331,7 +331,7 @@ void Participant::save(StateWriter& out) const {
   }
   out.write(cycles_);
   // What was sensed last is saved whether it is under way or not.
-  out.write(Value(toList(percepts())));
+  savePredicates(percepts(), out);
   if (inside_) actions_.save(out);
   percepts_.save(out, percepts_.size() > 0 ? percepts_.size() - 1 : 0);
   actions_.underWay().save(out, actions_.underWay().size());

@@ -34,7 +34,7 @@ void TransitQueue::save(StateWriter& out, std::size_t count) const {
   for (std::size_t i = 0; i < count; ++i) {
     const Entry& entry = ring_[indexOf(i)];
     out.write(entry.due);
-    out.write(Value(toList(entry.message)));
+    savePredicates(entry.message, out);
   }
 }
 

@@ -70,7 +70,7 @@ void DelayLine::save(StateWriter& out) const {
     out.write(std::uint64_t(entries_[i].elements));
     out.write(std::uint64_t(entries_[i].bytes));
   }
-  out.write(Value(toList(waiting)));
+  savePredicates(waiting, out);
 }
 
 void DelayLine::load(StateReader& in) {

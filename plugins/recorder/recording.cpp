@@ -18,6 +18,10 @@ constexpr std::size_t kChunkBytes = 4u << 20;
 constexpr std::size_t kLargeMessage = 512u << 10;
 constexpr mcap::Time kChunkTime = 1'000'000'000;             // ns
 constexpr auto kChunkWall = std::chrono::milliseconds(500);  // of real time
+// The thread looks by itself for what is queued, since waking it for each message would cost the simulation more than
+// all else: at this interval, and at once only for this many bytes.
+constexpr auto kLook = kChunkWall / 4;
+constexpr std::size_t kWakeBytes = 1u << 20;
 }  // namespace
 
 Recording::Recording(const std::string& file, std::string library, std::size_t maxQueued)
@@ -86,17 +90,20 @@ void Recording::flush() {
 }
 
 void Recording::queue(Item item) {
+  bool urgent = item.kind == Item::Kind::flush;
   {
     const std::lock_guard lock(mutex_);
     if (!failure_.empty()) return;
+    const bool before = queued_ >= kWakeBytes;
     queued_ += item.bytes();
+    urgent |= queued_ >= kWakeBytes && !before;
     if (queued_ > maxQueued_) {
       failure_ = fmt::format("more than {} MB wait for the disk", maxQueued_ >> 20);
       return;
     }
     items_.push_back(std::move(item));
   }
-  wake_.notify_one();
+  if (urgent) wake_.notify_one();
 }
 
 void Recording::put(std::string_view bytes) const {
@@ -148,7 +155,7 @@ void Recording::work() {
       bool ending = false;
       {
         std::unique_lock lock(mutex_);
-        wake_.wait_for(lock, kChunkWall / 2, [this] { return ending_ || !items_.empty(); });
+        wake_.wait_for(lock, kLook, [this] { return ending_ || toFlush_ > 0 || queued_ >= kWakeBytes; });
         items.swap(items_);
         queued_ = 0;
         ending = ending_;

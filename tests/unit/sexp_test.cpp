@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 
+#include "spark/error.h"
 #include "spark/predicates.h"
+#include "spark/state_stream.h"
 
 using namespace spark;
 
@@ -309,6 +311,27 @@ TEST_CASE("An atom can be replaced by a number, and its neighbours stay as they 
   std::string text;
   writeSexp(p, 2, text);
   CHECK(text == "(speed 0.25 (and another -3))(next )");
+}
+
+TEST_CASE("Predicates are saved as the values that they are, and loaded") {
+  Predicates p;
+  readSexp("(a (b 1) () \"a text of more than a word\") atom ()", p);
+  p.open("n").add(-2.5).add(3).add(std::int64_t{1} << 60).close();
+  const auto saved = [](auto... write) {
+    StateWriter out(true);
+    (write(out), ...);
+    return std::pair(out.bytes(), out.hash());
+  };
+  const auto direct = saved([&](StateWriter& out) { savePredicates(p, out); });
+  CHECK(direct == saved([&](StateWriter& out) { out.write(Value(toList(p))); }));
+  Predicates back;
+  back.add("before");
+  StateReader in(direct.first);
+  loadPredicates(in, back);
+  CHECK(in.atEnd());
+  CHECK(Value(toList(back)) == Value(toList(p)));
+  StateReader early(std::string_view(direct.first).substr(0, 40));
+  CHECK_THROWS_AS(loadPredicates(early, back), Error);
 }
 
 TEST_CASE("Predicates can be converted to values and back") {

@@ -8,19 +8,11 @@
 
 namespace spark {
 
-/// Mixes a word into the hash, and keeps its bytes, the lowest first. The multipliers are those of MurmurHash3's 64-bit
-/// finaliser (Appleby).
-void StateWriter::word(std::uint64_t w) {
-  a_ = std::rotl(a_ ^ (w * 0xff51afd7ed558ccdull), 29) * 0xc4ceb9fe1a85ec53ull + 0x9e3779b97f4a7c15ull;
-  ++count_;
-  if (!keep_) return;
+void StateWriter::keep(std::uint64_t w) {
   char bytes[8];
   for (int i = 0; i < 8; ++i) bytes[i] = static_cast<char>(w >> (8 * i));
   bytes_.append(bytes, 8);
 }
-
-void StateWriter::write(double v) { word(std::bit_cast<std::uint64_t>(v)); }
-void StateWriter::write(std::int64_t v) { word(static_cast<std::uint64_t>(v)); }
 
 void StateWriter::write(std::string_view v) {
   // The length, then eight bytes in a word; the last word is filled with zeros.

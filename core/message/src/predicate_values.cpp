@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "spark/predicates.h"
+#include "spark/state_stream.h"
 
 namespace spark {
 
@@ -48,6 +49,36 @@ void appendValue(const Value& v, Predicates& out) {
   append(v.toList(), out);
   out.close();
 }
+
+void writeType(Value::Type type, StateWriter& out) { out.write(static_cast<std::int64_t>(type)); }
+
+/// Writes a list as StateWriter writes a value of that type.
+template <class Range>
+void saveList(const Range& elements, StateWriter& out) {
+  std::int64_t size = 0;
+  for ([[maybe_unused]] const Element e : elements) ++size;
+  writeType(Value::Type::list, out);
+  out.write(size);
+  for (const Element e : elements) {
+    const Token& t = e.token();
+    switch (t.kind) {
+      case Token::Kind::number:
+        writeType(Value::Type::number, out);
+        out.write(t.number);
+        break;
+      case Token::Kind::integer:
+        writeType(Value::Type::integer, out);
+        out.write(t.integer);
+        break;
+      case Token::Kind::text:
+        writeType(Value::Type::string, out);
+        out.write(e.text());
+        break;
+      case Token::Kind::list:
+        saveList(e, out);
+    }
+  }
+}
 }  // namespace
 
 List toList(const Predicates& predicates) {
@@ -58,6 +89,13 @@ List toList(const Predicates& predicates) {
 
 void append(const List& values, Predicates& out) {
   for (const Value& v : values) appendValue(v, out);
+}
+
+void savePredicates(const Predicates& predicates, StateWriter& out) { saveList(predicates, out); }
+
+void loadPredicates(StateReader& in, Predicates& to) {
+  to.clear();
+  append(in.readValue().toList(), to);
 }
 
 bool isWord(std::string_view text) {

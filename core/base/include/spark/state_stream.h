@@ -2,6 +2,7 @@
 /// \file
 /// Values as bytes: what saved state is made of.
 
+#include <bit>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -20,9 +21,9 @@ class StateWriter {
   /// Keeps the bytes, in the memory of `memory`, whose content is lost.
   explicit StateWriter(std::string memory) : keep_(true), bytes_(std::move(memory)) { bytes_.clear(); }
   /// Writes a number, bit by bit.
-  void write(double v);
+  void write(double v) { word(std::bit_cast<std::uint64_t>(v)); }
   /// Writes an integer.
-  void write(std::int64_t v);
+  void write(std::int64_t v) { word(static_cast<std::uint64_t>(v)); }
   /// Writes an integer.
   void write(std::uint64_t v) { write(static_cast<std::int64_t>(v)); }
   /// Writes an integer.
@@ -50,7 +51,14 @@ class StateWriter {
   std::string take() { return std::move(bytes_); }
 
  private:
-  void word(std::uint64_t w);
+  /// Mixes a word into the hash, and keeps its bytes, the lowest first. The multipliers are those of MurmurHash3's
+  /// 64-bit finaliser (Appleby). Inline, because a hash of a match is some 100,000 words.
+  void word(std::uint64_t w) {
+    a_ = std::rotl(a_ ^ (w * 0xff51afd7ed558ccdull), 29) * 0xc4ceb9fe1a85ec53ull + 0x9e3779b97f4a7c15ull;
+    ++count_;
+    if (keep_) keep(w);
+  }
+  void keep(std::uint64_t w);
   std::uint64_t a_ = 0x9e3779b97f4a7c15ull, count_ = 0;
   bool keep_;
   std::string bytes_;

@@ -17,6 +17,9 @@
 
 namespace spark {
 
+class StateReader;
+class StateWriter;
+
 /// One token of the buffer: an atom, or the head of a list, whose elements follow. Tokens refer to each other by sizes
 /// only, and short texts are stored in the token, so that the tokens of a list can be copied as they are.
 struct Token {
@@ -278,6 +281,10 @@ inline std::string_view Element::head() const {
 List toList(const Predicates& predicates);
 /// Adds the values as top-level elements. Bools and nil become texts.
 void append(const List& values, Predicates& out);
+/// Saves the top-level elements: writes what toList() returns, but allocates nothing.
+void savePredicates(const Predicates& predicates, StateWriter& out);
+/// Replaces `to` by the elements that savePredicates() wrote. Throws what StateReader::readValue() throws.
+void loadPredicates(StateReader& in, Predicates& to);
 
 /// True for a text that can be written without quotes: it has no blanks, control characters, brackets, quotes,
 /// backslashes and semicolons, and is not empty.
