@@ -1,5 +1,6 @@
 #include "joint_kinematics.h"
 
+#include <Eigen/Geometry>
 #include <atomic>
 
 #include "joint_frames.h"
