@@ -5,15 +5,12 @@
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 #include "spark/node.h"
-#include "spark/prefetch.h"
 #include "spark/random.h"
 #include "tree.h"
 
 namespace spark {
 
 namespace {
-constexpr std::size_t kNode = 256;  // bytes of a node that are prefetched
-
 /// True for the root of a kernel's tree, with which the kernel saves its own state.
 bool isRoot(const Leaf& leaf) { return !leaf.parent() && leaf.isLinked(); }
 
@@ -44,13 +41,8 @@ void saveTree(const Leaf& leaf, StateWriter& out) {
   if (leaf.classObject())
     for (const Property* p : leaf.classObject()->stateProperties()) out.write(p->get(leaf));
   detail::Tree::saveState(leaf, out);
-  const Node* const node = leaf.asNode();
-  if (!node) return;
-  const auto& children = node->children();
-  for (std::size_t i = 0; i < children.size(); ++i) {
-    if (i + 1 < children.size()) prefetch(children[i + 1].get(), kNode);
-    saveTree(*children[i], out);
-  }
+  if (const Node* node = leaf.asNode())
+    for (const auto& c : node->children()) saveTree(*c, out);
 }
 
 void loadTree(Leaf& leaf, StateReader& in) {
