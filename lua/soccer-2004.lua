@@ -13,7 +13,7 @@ local players = option{ name = "players", default = 11, doc = "Agents of each ty
 local random  = option{ name = "randomField", default = false,
                         doc = "As then, the size of the field and the mass of the ball are random (by the seed)." }
 local create  = option{ name = "createEffector", default = "CreateEffector",
-                        doc = "How an agent gets its sphere: CreateEffector by (create), SceneEffector by (scene FILE)." }
+                        doc = "How agents get spheres: CreateEffector by (create), SceneEffector by (scene FILE)." }
 local offside = option{ name = "offside", default = true, doc = "Offside is judged." }
 
 files() scene() materials() physics(engineOption())

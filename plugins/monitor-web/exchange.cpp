@@ -17,7 +17,8 @@ Exchange::Exchange() : wakeupFd_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {
 
 Exchange::~Exchange() { close(wakeupFd_); }
 
-void Exchange::handOver() {
+void Exchange::filled() {
+  if (!urgent.load(std::memory_order_relaxed) && !wanted.load(std::memory_order_relaxed)->complete()) return;
   ready.store(wanted.exchange(nullptr, std::memory_order_acquire), std::memory_order_release);
   wake();
 }

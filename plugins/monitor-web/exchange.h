@@ -89,8 +89,9 @@ class Exchange {
 
   /// True if the next frame is wanted, whatever its time.
   bool wantsNow() const { return wanted.load(std::memory_order_acquire) && urgent.load(std::memory_order_relaxed); }
-  /// Gives the batch that is wanted back to the I/O thread. Simulation thread only.
-  void handOver();
+  /// A snapshot of the batch that is wanted was filled: hands the batch over if a viewer waits or it is complete.
+  /// Simulation thread only.
+  void filled();
   /// Wakes the I/O thread. Any thread; does not block.
   void wake();
   /// The eventfd that wake() makes readable; a reader consumes eight bytes. Owned by this object.

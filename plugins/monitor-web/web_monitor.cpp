@@ -41,12 +41,12 @@ void WebMonitor::takeAgain() {
   web::Exchange* exchange = this->exchange();
   web::SnapshotBatch* batch = exchange ? exchange->wanted.load(std::memory_order_acquire) : nullptr;
   if (!newest_ || !batch) return;
-  const bool urgent = exchange->urgent.load(std::memory_order_relaxed), setBack = time_ < takenTime_;
-  if (!urgent && !setBack && time_ < batch->due) return;
+  const bool setBack = time_ < takenTime_;
+  if (time_ < batch->due && !setBack && !exchange->urgent.load(std::memory_order_relaxed)) return;
   if (takenAt_ != kernel().structureVersion() || newest_->frame.shape == 0) return;  // its pointers may dangle
   takenTime_ = time_;
   fill(*newest_, time_, *batch);
-  if (urgent || batch->complete()) exchange->handOver();
+  exchange->filled();
 }
 
 void WebMonitor::fill(const NewestFrame& newest, double time, web::SnapshotBatch& batch) {

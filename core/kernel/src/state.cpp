@@ -13,6 +13,7 @@ namespace spark {
 
 namespace {
 constexpr std::size_t kNode = 256;  // bytes of a node that are prefetched
+
 /// True for the root of a kernel's tree, with which the kernel saves its own state.
 bool isRoot(const Leaf& leaf) { return !leaf.parent() && leaf.isLinked(); }
 

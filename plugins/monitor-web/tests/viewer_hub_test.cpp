@@ -84,8 +84,7 @@ struct HubFixture {
     s->events.clear();
     s->eventTimes.clear();
     if (foul) s->events.open("foul").add(std::exchange(foul, 0)).close(), s->eventTimes.push_back(s->time);
-    if (!exchange.urgent && !batch->complete()) return true;
-    exchange.handOver();
+    exchange.filled();
     hub.collect(now);
     return true;
   }
