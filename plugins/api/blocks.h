@@ -36,7 +36,8 @@ struct Block {
   }
   template <class T>
   static constexpr std::uint64_t kindOf(int number = 0) {
-    return engine::kindOf(T::kKind) + static_cast<std::uint64_t>(number);
+    constexpr std::uint64_t kKind = engine::kindOf(T::kKind);
+    return kKind + static_cast<std::uint64_t>(number);
   }
   /// Its numbers; the default values if it has not as many.
   template <class T>

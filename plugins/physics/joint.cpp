@@ -243,8 +243,11 @@ void Joint::enableFeedback(bool on) {
 }
 
 void Joint::saveState(StateWriter& out) const {
-  for (int axis = 0; axis < axes(); ++axis)
-    for (int p = 0; p < kSavedParameters; ++p) out.write(parameter(static_cast<JointParameter>(p), axis));
+  for (int axis = 0; axis < axes(); ++axis) {
+    double saved[kSavedParameters] = {};
+    if (world()) world()->parameters(joint_, axis, saved);
+    for (const double v : saved) out.write(v);
+  }
   for (int axis = 0; axis < axes(); ++axis) {
     const engine::Control* c = world() ? world()->controlOf(joint_, axis) : nullptr;
     out.write(c != nullptr);

@@ -74,6 +74,16 @@ double WorldModel::parameter(JointHandle joint, JointParameter p, int axis) cons
   return *parameterOf(j, soft, motors_[index], p, axis);
 }
 
+void WorldModel::parameters(JointHandle joint, int axis, std::span<double> out) const {
+  const Joint& j = of(joint);
+  const Index index = joints_[joint];
+  const auto soft = model_.extensions.sceneJoints[index].get<engine::JointSoftness>();
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto p = static_cast<JointParameter>(i);
+    out[i] = hasParameter(j, p, axis) ? *parameterOf(j, soft, motors_[index], p, axis) : 0;
+  }
+}
+
 void WorldModel::drive(JointHandle joint, int axis, double speed) {
   const Joint& j = of(joint);
   if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;

@@ -230,6 +230,7 @@ constexpr std::size_t kSaved = 3 + 4 + 12 + 3 + 3 + 3 + 3 + 4;
 void WorldModel::saveBody(BodyHandle body, std::vector<double>& out) const {
   const Index i = bodies_[body];
   const DynamicState& s = state_.bodies[i];
+  out.reserve(out.size() + kSaved);
   const auto put = [&](const double* from, int n) { out.insert(out.end(), from, from + n); };
   put(s.position.data(), 3);
   put(s.quaternion.data(), 4);

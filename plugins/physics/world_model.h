@@ -135,6 +135,8 @@ class WorldModel {
   void setParameter(JointHandle joint, engine::JointParameter p, int axis, double v);
   /// 0 for parameters and axes that the joint does not have.
   double parameter(JointHandle joint, engine::JointParameter p, int axis) const;
+  /// The first parameters of an axis, in the order of JointParameter, as many as `out` takes.
+  void parameters(JointHandle joint, int axis, std::span<double> out) const;
   /// Sets the passive spring of an axis: stiffness [Nm/rad or N/m], 0: none, and where it is at rest [rad or m].
   void setSpring(JointHandle joint, int axis, double stiffness, double position);
   /// Sets JointParameter::velocity; a speed other than 0 wakes the first body of attach(). An axis has one command:

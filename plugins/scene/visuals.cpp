@@ -127,7 +127,7 @@ void StaticMesh::resetMaterials(std::vector<std::string> names) {
   markModified(*this);
 }
 
-void StaticMesh::saveState(StateWriter& out) const { out.write(Convert<std::vector<std::string>>::to(materials_)); }
+void StaticMesh::saveState(StateWriter& out) const { out.write(materials_); }
 
 void StaticMesh::loadState(StateReader& in) {
   const Value names = in.readValue();

@@ -17,11 +17,22 @@ void StateWriter::keep(std::uint64_t w) {
 void StateWriter::write(std::string_view v) {
   // The length, then eight bytes in a word; the last word is filled with zeros.
   word(v.size());
-  for (std::size_t i = 0; i < v.size(); i += 8) {
+  const auto bytes = [&v](std::size_t count) {
     std::uint64_t w = 0;
-    for (std::size_t k = 0; k < 8 && i + k < v.size(); ++k)
-      w |= static_cast<std::uint64_t>(static_cast<unsigned char>(v[i + k])) << (8 * k);
-    word(w);
+    for (std::size_t k = 0; k < count; ++k)
+      w |= static_cast<std::uint64_t>(static_cast<unsigned char>(v[k])) << (8 * k);
+    return w;
+  };
+  for (; v.size() >= 8; v.remove_prefix(8)) word(bytes(8));
+  if (!v.empty()) word(bytes(v.size()));
+}
+
+void StateWriter::write(const std::vector<std::string>& v) {
+  word(static_cast<std::uint64_t>(Value::Type::list));
+  word(v.size());
+  for (const std::string& s : v) {
+    word(static_cast<std::uint64_t>(Value::Type::string));
+    write(std::string_view(s));
   }
 }
 

@@ -8,12 +8,14 @@
 #include "spark/describe.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/prefetch.h"
 #include "tree.h"
 
 namespace spark {
 
 namespace {
-constexpr std::size_t kManyChildren = 64;  // from this number on, children are found by an index of names
+constexpr std::size_t kManyChildren = 64;          // from this number on, children are found by an index of names
+constexpr std::size_t kAhead = 8, kVisited = 256;  // of the node so many places ahead so many bytes are prefetched
 
 /// True for /classes and /plugins, whose children only the kernel adds.
 bool isKernelFolder(const Node& node) {
@@ -33,8 +35,7 @@ std::size_t Node::ordinalOf(const Leaf& child) const {
     if (same != names_->end()) {
       const std::vector<Leaf*>& list = same->second;
       if (list.back() == &child) return list.size();  // a child that was just added
-      const std::size_t before = std::find(list.begin(), list.end(), &child) - list.begin();
-      return before + 1;
+      return std::find(list.begin(), list.end(), &child) - list.begin() + 1;
     }
   }
   std::size_t n = 1;
@@ -101,6 +102,7 @@ void Node::collectAs(const InterfaceId& id, bool deep, Take take, void* list) co
   // In the kernel's list all descendants follow their ancestor.
   const std::vector<Leaf*>& order = kernel().tree().order();
   for (std::size_t i = detail::Tree::preOrder(*this) + 1; i <= detail::Tree::lastBelow(*this); ++i) {
+    if (i + kAhead < order.size()) prefetch(order[i + kAhead], kVisited);
     void* match = order[i]->query(id);
     if (!match) continue;
     take(list, match, *order[i]);

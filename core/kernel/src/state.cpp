@@ -5,17 +5,22 @@
 #include "spark/class_object.h"
 #include "spark/kernel.h"
 #include "spark/node.h"
-#include "spark/prefetch.h"
 #include "spark/random.h"
 #include "tree.h"
 
 namespace spark {
 
 namespace {
-constexpr std::size_t kNode = 256;  // bytes of a node that are prefetched
-
 /// True for the root of a kernel's tree, with which the kernel saves its own state.
 bool isRoot(const Leaf& leaf) { return !leaf.parent() && leaf.isLinked(); }
+
+/// Writes the state of `leaf` alone.
+void save(const Leaf& leaf, StateWriter& out) {
+  if (isRoot(leaf)) leaf.kernel().saveState(out);
+  if (leaf.classObject())
+    for (const Property* p : leaf.classObject()->stateProperties()) out.write(p->get(leaf));
+  detail::Tree::saveState(leaf, out);
+}
 
 void writeConfiguration(const Leaf& leaf, StateWriter& out) {
   out.write(leaf.name());
@@ -40,15 +45,9 @@ void writeConfiguration(const Leaf& leaf, StateWriter& out) {
 }  // namespace
 
 void saveTree(const Leaf& leaf, StateWriter& out) {
-  if (isRoot(leaf)) leaf.kernel().saveState(out);
-  if (leaf.classObject())
-    for (const Property* p : leaf.classObject()->stateProperties()) out.write(p->get(leaf));
-  detail::Tree::saveState(leaf, out);
-  const Node* const node = leaf.asNode();
-  for (std::size_t i = 0, count = node ? node->children().size() : 0; i < count; ++i) {
-    if (i + 1 < count) prefetch(node->children()[i + 1].get(), kNode);
-    saveTree(*node->children()[i], out);
-  }
+  save(leaf, out);
+  const auto saveBelow = [](void* to, void*, Leaf& below) { save(below, *static_cast<StateWriter*>(to)); };
+  if (const Node* node = leaf.asNode()) node->collectAs(Leaf::kInterface, true, saveBelow, &out);
 }
 
 void loadTree(Leaf& leaf, StateReader& in) {

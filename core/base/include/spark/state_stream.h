@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "spark/abi/spark/state_stream.h"
 #include "spark/value.h"
@@ -36,6 +37,8 @@ class StateWriter {
   void write(const std::string& v) { write(std::string_view(v)); }
   /// Writes a text.
   void write(const char* v) { write(std::string_view(v)); }
+  /// Writes texts as the list that is their value, without making it.
+  void write(const std::vector<std::string>& v);
   /// Writes a value with its type.
   void write(const Value& v);
   /// Writes bytes that are read again but do not count for the hash: data of this process
