@@ -22,6 +22,7 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
       ++i;
 
   for (Entry& e : entries_) {
+    e.object = e.effector.get();
     if (e.effector->as<ISyncEffector>()) syncPredicate_ = e.predicate;
     auto modifiers = ModifierChain::of(*e.effector);
     if (!modifiers) continue;

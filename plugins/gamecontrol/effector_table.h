@@ -10,6 +10,7 @@
 
 #include "api/agents.h"
 #include "gamecontrol/modifier_chain.h"
+#include "spark/prefetch.h"
 
 namespace spark::gamecontrol {
 
@@ -46,7 +47,9 @@ class EffectorTable {
   /// Looks up the effectors for the actions of one cycle, in order.
   class Lookup {
    public:
-    explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_) {}
+    explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_) {
+      prefetch(table.entries_.data(), table.entries_.size() * sizeof(Entry));
+    }
     /// The effector for `predicate`.
     Target find(std::string_view predicate) {
       auto& entries = table_.entries_;
@@ -57,10 +60,15 @@ class EffectorTable {
       }
       Entry& entry = entries[*guess_];
       guess_ = &entry.next;
+      // The solver has displaced effectors, and the joints above them, from the CPU caches.
+      const Entry& next = entries[entry.next];
+      prefetch(entries[next.next].object, kEffectorBytes);
+      if (const Effector* e = next.effector.get()) prefetch(e->parent(), kParentBytes);
       return {entry.effector.get(), entry.modified};
     }
 
    private:
+    static constexpr std::size_t kEffectorBytes = 256, kParentBytes = 320;  // that most actions read
     EffectorTable& table_;
     std::size_t* guess_;  ///< index of the entry that is tried first
   };
@@ -69,8 +77,9 @@ class EffectorTable {
   struct Entry {
     std::string predicate;
     Ref<Effector> effector;
-    std::size_t next = 0;          ///< index of the entry that was used after this one the last time
-    Modified* modified = nullptr;  ///< of modified_
+    std::size_t next = 0;              ///< index of the entry that was used after this one the last time
+    Modified* modified = nullptr;      ///< of modified_
+    const Effector* object = nullptr;  ///< only to be prefetched: it may be gone
   };
   /// Binary search; the number of entries if there is none.
   std::size_t indexOf(std::string_view predicate) const;

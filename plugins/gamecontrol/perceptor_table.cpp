@@ -4,9 +4,17 @@
 
 #include <algorithm>
 
+#include "spark/prefetch.h"
 #include "spark/running.h"
 
 namespace spark::gamecontrol {
+
+namespace {
+// The solver has displaced perceptors, and the joints above them, from the CPU caches.
+constexpr std::size_t kFar = 4;      // prefetch distance of perceptors
+constexpr std::size_t kNear = 2;     // prefetch distance of what is above them
+constexpr std::size_t kBytes = 320;  // of each, that most read
+}  // namespace
 
 std::size_t PerceptorTable::rebuild(AgentAspect& root) {
   shared_.clear();
@@ -44,6 +52,8 @@ void PerceptorTable::share(std::uint64_t round, std::int64_t cycle) {
 bool PerceptorTable::sense(Predicates& out, const Event& event, std::int64_t cycle) {
   NowRunning now("sense");
   for (std::size_t i = 0; i < called_.size(); ++i) {
+    if (i + kFar < called_.size()) prefetch(called_[i + kFar].perceptor, kBytes);
+    if (i + kNear < called_.size()) prefetch(called_[i + kNear].perceptor->parent(), kBytes);
     const Called& c = called_[i];
     const std::uint32_t first = out.size();
     if (isDue(*c.perceptor, cycle)) {
