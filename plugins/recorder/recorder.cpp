@@ -6,6 +6,7 @@
 
 #include "about.h"
 #include "foxglove.h"
+#include "snapshots.h"
 #include "spark/error.h"
 #include "spark/state.h"
 
@@ -96,7 +97,7 @@ void Recorder::finish() {
   // What came after the last cycle, and the end: a state with that.
   mcap::Time end = lastTime_;
   if (std::string rest = inputs_.take(); !rest.empty()) recording_->message(inputChannel_, ++end, std::move(rest));
-  if (!kernel().isEnding() && simulation_ && (end > lastTime_ || simulation_->cycle() != state_.cycle)) keyFrame(end);
+  if (!kernel().isEnding() && simulation_ && (end > lastTime_ || simulation_->cycle() != stateCycle_)) keyFrame(end);
   if (match_) match_->finish(end);
   match_.reset();
   recording_.reset();
@@ -145,8 +146,14 @@ void Recorder::endCycle(const Event& event) {
 }
 
 void Recorder::keyFrame(mcap::Time time) {
-  snapshots_->take(state_);
-  recording_->message(stateChannel_, time, snapshots_->write(state_));
+  const auto state = std::make_shared<Snapshot>();
+  state->state.reserve(stateBytes_);
+  snapshots_->take(*state);
+  stateCycle_ = state->cycle;
+  stateBytes_ = state->state.size();
+  recording_->later(stateBytes_, [channel = stateChannel_, state, time](const auto& put) {
+    put(channel, time, recorder::snapshotBytes(*state));
+  });
 }
 
 void Recorder::drawFrame(mcap::Time time) {

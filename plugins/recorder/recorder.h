@@ -67,7 +67,8 @@ class Recorder : public Node, public IInputTape {
   double nextKeyFrame_ = 0;
   std::atomic<mcap::Time> lastTime_ = 0;  ///< the log may be written by any thread
   bool failed_ = false;
-  Snapshot state_;  ///< the last one that was written whole
+  std::int64_t stateCycle_ = -1;  ///< of the last key frame
+  std::size_t stateBytes_ = 0;    ///< of its state
   Link<ISimulation> simulation_;
   Link<ISnapshots> snapshots_;
   Link<IMonitorServer> monitor_;

@@ -13,6 +13,11 @@
 
 namespace spark {
 
+namespace recorder {
+/// A whole snapshot as bytes, in any thread. Throws Error for a state alone.
+std::string snapshotBytes(const Snapshot& snapshot);
+}  // namespace recorder
+
 /// Takes and restores snapshots, at /sys/host/snapshots. It is made after all that belongs to the config: what is newer
 /// was made by the run.
 class Snapshots : public Node, public ISnapshots {
@@ -22,7 +27,7 @@ class Snapshots : public Node, public ISnapshots {
   void take(Snapshot& out, bool whole) override;
   void restore(const Snapshot& snapshot, std::optional<std::uint64_t> seed) override;
   void load(const std::string& file, double seconds, std::optional<std::uint64_t> seed) override;
-  std::string write(const Snapshot& snapshot) const override;
+  std::string write(const Snapshot& snapshot) const override { return recorder::snapshotBytes(snapshot); }
   Snapshot read(std::string_view bytes) const override;
 
   /// Writes a file with a snapshot of now, and the texts that the run was made of. Throws Error if that fails.
