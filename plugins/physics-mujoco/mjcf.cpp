@@ -111,10 +111,10 @@ struct Writer {
   void put(fmt::format_string<A...> format, A&&... arguments) {
     fmt::format_to(std::back_inserter(out), format, std::forward<A>(arguments)...);
   }
-  static std::string text(const Vec3& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x(), v.y(), v.z()); }
+  static std::string text(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y(), v.z()); }
   void putPose(const Pose& p) {
     const Eigen::Quaterniond q(p.rotation);
-    put(R"( pos="{}" quat="{:.17g} {:.17g} {:.17g} {:.17g}")", text(p.position), q.w(), q.x(), q.y(), q.z());
+    put(R"( pos="{}" quat="{} {} {} {}")", text(p.position), q.w(), q.x(), q.y(), q.z());
   }
 
   void putGeom(Index index) {
@@ -127,16 +127,16 @@ struct Writer {
     Pose pose = g.offset;
     switch (s.shape) {
       case Shape::box:
-        put(R"( type="box" size="{:.17g} {:.17g} {:.17g}")", length(s.lengths.x() / 2), length(s.lengths.y() / 2),
+        put(R"( type="box" size="{} {} {}")", length(s.lengths.x() / 2), length(s.lengths.y() / 2),
             length(s.lengths.z() / 2));
         break;
       case Shape::sphere:
-        put(R"( type="sphere" size="{:.17g}")", length(s.radius));
+        put(R"( type="sphere" size="{}")", length(s.radius));
         break;
       case Shape::capsule:
       case Shape::cylinder:
-        put(R"( type="{}" size="{:.17g} {:.17g}")", s.shape == Shape::capsule ? "capsule" : "cylinder",
-            length(s.radius), length(s.length / 2));
+        put(R"( type="{}" size="{} {}")", s.shape == Shape::capsule ? "capsule" : "cylinder", length(s.radius),
+            length(s.length / 2));
         break;
       case Shape::plane: {
         const Vec3 normal(s.plane[0], s.plane[1], s.plane[2]);
@@ -156,21 +156,21 @@ struct Writer {
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
     putPose(pose);
     const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
-    put(R"( friction="{:.17g}" condim="{}" priority="{}")", fmt::join(m.friction, " "), m.condim, m.priority);
-    put(R"( solref="{:.17g}" solimp="{:.17g}" margin="{:.17g}" gap="{:.17g}")", fmt::join(m.solref, " "),
-        fmt::join(m.solimp, " "), m.margin, m.gap);
+    put(R"( friction="{}" condim="{}" priority="{}")", fmt::join(m.friction, " "), m.condim, m.priority);
+    put(R"( solref="{}" solimp="{}" margin="{}" gap="{}")", fmt::join(m.solref, " "), fmt::join(m.solimp, " "),
+        m.margin, m.gap);
     put("/>\n");
   }
 
   void putRange(const engine::JointAxis& a, const AxisNumbers& m) {
-    put(R"( solreflimit="{:.17g}" solimplimit="{:.17g}" margin="{:.17g}")", fmt::join(m.stopSolref, " "),
-        fmt::join(m.stopSolimp, " "), m.stopMargin);
+    put(R"( solreflimit="{}" solimplimit="{}" margin="{}")", fmt::join(m.stopSolref, " "), fmt::join(m.stopSolimp, " "),
+        m.stopMargin);
     if (!(a.lowStop <= a.highStop) || (std::isinf(a.lowStop) && std::isinf(a.highStop))) return;
     // MuJoCo's limits are two-sided; a million turns or metres are as good as none.
     const double low = std::max(a.lowStop, -1e6), high = std::min(a.highStop, 1e6);
     // Equal stops lock the axis: MuJoCo wants a range.
     const double least = low == high ? 1e-6 : 0;
-    put(R"( limited="true" range="{:.17g} {:.17g}")", low - least, high + least);
+    put(R"( limited="true" range="{} {}")", low - least, high + least);
   }
 
   /// The spring that acts on a coordinate. Springs count as angles of the model do, coordinates as stops.
@@ -181,7 +181,7 @@ struct Writer {
                           : j.type == JointType::hinge2 ? axis == 1
                                                         : j.type == JointType::hinge && j.reversed;
     if (own.stiffness > 0)
-      put(R"( stiffness="{:.17g}" springref="{:.17g}")", own.stiffness, (opposite ? -1 : 1) * own.springPosition);
+      put(R"( stiffness="{}" springref="{}")", own.stiffness, (opposite ? -1 : 1) * own.springPosition);
   }
 
   /// The joint of a link, in the frame of its body. Coordinates are those of the child relative to the parent, which
@@ -206,8 +206,8 @@ struct Writer {
           text(axis));
       if (!own) return;
       const auto m = model.extensions.joints[link.joint].get<AxisNumbers>(static_cast<int>(own - j.axes.data()));
-      put(R"( armature="{:.17g}" damping="{:.17g}" solreffriction="{:.17g}" solimpfriction="{:.17g}")", own->armature,
-          own->damping, fmt::join(m.frictionSolref, " "), fmt::join(m.frictionSolimp, " "));
+      put(R"( armature="{}" damping="{}" solreffriction="{}" solimpfriction="{}")", own->armature, own->damping,
+          fmt::join(m.frictionSolref, " "), fmt::join(m.frictionSolimp, " "));
       putSpring(j, static_cast<int>(own - j.axes.data()));
       if (limited) putRange(*own, m);
     };
@@ -221,7 +221,7 @@ struct Writer {
         put("/>\n");
         break;
       case JointType::ball:
-        put(R"(<joint name="{}" type="ball" pos="{}" damping="{:.17g}"/>)", jointName(link.joint, 0), text(at),
+        put(R"(<joint name="{}" type="ball" pos="{}" damping="{}"/>)", jointName(link.joint, 0), text(at),
             j.axes[0].damping);
         break;
       case JointType::universal:
@@ -243,7 +243,7 @@ struct Writer {
           const auto soft = model.extensions.sceneJoints[link.joint].get<engine::JointSoftness>();
           const double dt = step, erp = soft.suspensionErp, cfm = std::max(soft.suspensionCfm, 1e-7);
           axial(0, "slide", inChild(j.inA.axis[0], true), nullptr);
-          put(R"( stiffness="{:.17g}" damping="{:.17g}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
+          put(R"( stiffness="{}" damping="{}"/>)", erp / (cfm * dt), (1 - erp) / cfm);
         };
         const auto steering = [&] {
           axial(1, "hinge", inChild(j.inA.axis[0], true), &j.axes[0]);
@@ -280,7 +280,7 @@ struct Writer {
     if (part.mass == 0) return;
     // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
     const auto [moments, axes] = principalAxes(part.inertia, part.axes);
-    put(R"(<inertial mass="{:.17g}" diaginertia="{}")", part.mass, text(moments));
+    put(R"(<inertial mass="{}" diaginertia="{}")", part.mass, text(moments));
     putPose({part.center - b.linkOrigin, axes});
     put("/>\n");
   }
@@ -338,9 +338,8 @@ struct Writer {
             fmt::join(s.mesh->triangles, " "));
       // Its heights are written to the compiled model: see takeHeights().
       if (s.shape == Shape::heightField)
-        put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{:.17g} {:.17g} {:.17g} 1"/>)", geomName(i),
-            s.heightField->columns, s.heightField->rows, s.heightField->width / 2, s.heightField->depth / 2,
-            spanOf(*s.heightField));
+        put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{} {} {} 1"/>)", geomName(i), s.heightField->columns,
+            s.heightField->rows, s.heightField->width / 2, s.heightField->depth / 2, spanOf(*s.heightField));
     }
     put("</asset>\n");
   }
@@ -384,13 +383,12 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
   w.put("<mujoco>\n");
   w.put(R"(<compiler angle="radian" inertiafromgeom="false" balanceinertia="true"/>)");
   const OptionNumbers o = optionsOf(model);
-  w.put(R"(<option timestep="{:.17g}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
+  w.put(R"(<option timestep="{}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
         Writer::text(model.parameters.gravity), OptionNumbers::kIntegrators[static_cast<std::size_t>(o.integrator)],
         OptionNumbers::kCones[static_cast<std::size_t>(o.cone)],
         OptionNumbers::kSolvers[static_cast<std::size_t>(o.solver)], o.iterations);
-  w.put(R"( tolerance="{:.17g}" impratio="{:.17g}" density="{:.17g}" viscosity="{:.17g}" wind="{:.17g}"/>)",
-        o.tolerance, o.impratio, hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity,
-        fmt::join(o.wind, " "));
+  w.put(R"( tolerance="{}" impratio="{}" density="{}" viscosity="{}" wind="{}"/>)", o.tolerance, o.impratio,
+        hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity, fmt::join(o.wind, " "));
   w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
   w.putMeshes();
   w.put("<worldbody>\n");

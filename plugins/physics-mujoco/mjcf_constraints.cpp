@@ -66,11 +66,11 @@ void Constraints::add(int number, const EqualityNumbers& n) {
   const char* const type = EqualityNumbers::kTypes[static_cast<std::size_t>(n.type)];
   put(equalities_, R"(<{} name="{}" {}1="{}")", type, equalityName(number), joints ? "joint" : "body", first);
   if (!alone) put(equalities_, R"( {}2="{}")", joints ? "joint" : "body", second);
-  if (joints) put(equalities_, R"( polycoef="{:.17g}")", fmt::join(n.polynomial, " "));
-  if (n.type == 0) put(equalities_, R"( anchor="{:.17g}")", fmt::join(n.anchor1, " "));
-  if (n.type == 1) put(equalities_, R"( torquescale="{:.17g}")", n.torqueScale);
-  put(equalities_, R"( active="{}" solref="{:.17g}" solimp="{:.17g}"/>)", n.active ? "true" : "false",
-      fmt::join(n.solref, " "), fmt::join(n.solimp, " "));
+  if (joints) put(equalities_, R"( polycoef="{}")", fmt::join(n.polynomial, " "));
+  if (n.type == 0) put(equalities_, R"( anchor="{}")", fmt::join(n.anchor1, " "));
+  if (n.type == 1) put(equalities_, R"( torquescale="{}")", n.torqueScale);
+  put(equalities_, R"( active="{}" solref="{}" solimp="{}"/>)", n.active ? "true" : "false", fmt::join(n.solref, " "),
+      fmt::join(n.solimp, " "));
   equalities_ += '\n';
 }
 
@@ -85,11 +85,10 @@ void Constraints::add(int number, const TendonNumbers& n) {
     whole = whole && !name.empty();
     if (n.spatial) {
       put(path, R"(<site site="{}"/>)", siteName(number, i));
-      sites.emplace_back(
-          e.id == 0 ? kNone : engine::indexOf(model_.bodies, e.id),
-          fmt::format(R"(<site name="{}" pos="{:.17g}"/>)", siteName(number, i), fmt::join(e.point, " ")));
+      sites.emplace_back(e.id == 0 ? kNone : engine::indexOf(model_.bodies, e.id),
+                         fmt::format(R"(<site name="{}" pos="{}"/>)", siteName(number, i), fmt::join(e.point, " ")));
     } else {
-      put(path, R"(<joint joint="{}" coef="{:.17g}"/>)", name, e.point[0]);
+      put(path, R"(<joint joint="{}" coef="{}"/>)", name, e.point[0]);
     }
   }
   if (!whole) {
@@ -98,11 +97,11 @@ void Constraints::add(int number, const TendonNumbers& n) {
   }
   sites_.insert(sites_.end(), sites.begin(), sites.end());
   const char* const type = n.spatial ? "spatial" : "fixed";
-  put(tendons_, R"(<{} name="{}" stiffness="{:.17g}" damping="{:.17g}" frictionloss="{:.17g}")", type,
-      tendonName(number), n.stiffness, n.damping, n.frictionLoss);
+  put(tendons_, R"(<{} name="{}" stiffness="{}" damping="{}" frictionloss="{}")", type, tendonName(number), n.stiffness,
+      n.damping, n.frictionLoss);
   if (n.limited && n.range[0] < n.range[1])
-    put(tendons_, R"( limited="true" range="{:.17g}" margin="{:.17g}")", fmt::join(n.range, " "), n.margin);
-  put(tendons_, R"( solreflimit="{:.17g}" solimplimit="{:.17g}" solreffriction="{:.17g}" solimpfriction="{:.17g}">)",
+    put(tendons_, R"( limited="true" range="{}" margin="{}")", fmt::join(n.range, " "), n.margin);
+  put(tendons_, R"( solreflimit="{}" solimplimit="{}" solreffriction="{}" solimpfriction="{}">)",
       fmt::join(n.limitSolref, " "), fmt::join(n.limitSolimp, " "), fmt::join(n.frictionSolref, " "),
       fmt::join(n.frictionSolimp, " "));
   put(tendons_, "{}</{}>\n", path, type);

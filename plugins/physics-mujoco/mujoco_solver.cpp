@@ -21,9 +21,9 @@ int stepsToCompile(std::size_t bodies) {
   return 1 + static_cast<int>(bodies * bodies / kBodySquaresPerStep);
 }
 /// Compiles in a thread of its own. In real time it has the lowest priority, so that it does not slow the simulation.
-Compiled compileAside(const std::string& mjcf, bool paced) {
+Compiled compileAside(const engine::Model& model, const Trees& trees, double step, Sizes sizes, bool paced) {
   if (paced) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
-  return compileWorld(mjcf, true);
+  return compileWorld(toMjcf(model, trees, step, sizes, Constraints(model, trees)), true);
 }
 
 /// Steps for which a world that changes again and again may wait for its model.
@@ -73,7 +73,9 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   abandon();
   world_.reset();
   Trees trees(model, state);
-  const std::string text = textOf(model, trees);
+  const Constraints constraints(model, trees);
+  reportSkipped(constraints);
+  const std::string text = toMjcf(model, trees, step_, sizes_, constraints);
   try {
     begin(model, std::move(trees), compileWorld(text));
     poses_ = posesOf(state);
@@ -82,8 +84,7 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   }
 }
 
-std::string MujocoSolver::textOf(const engine::Model& model, const Trees& trees) {
-  const Constraints constraints(model, trees);
+void MujocoSolver::reportSkipped(const Constraints& constraints) {
   const std::vector<int> before = std::exchange(skipped_, constraints.skipped());
   for (const int number : skipped_)
     if (std::find(before.begin(), before.end(), number) == before.end())
@@ -91,7 +92,6 @@ std::string MujocoSolver::textOf(const engine::Model& model, const Trees& trees)
           "{}: no effect in MuJoCo: expected bodies that are there, or joints with one coordinate, and no element "
           "twice",
           pathOfConstraint(engine_.kernel().root(), number));
-  return toMjcf(model, trees, step_, sizes_, constraints);
 }
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
@@ -112,7 +112,9 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.stepsLeft = stepsToCompile(model.bodies.size());
   p.trees.emplace(model, state);
   p.poses = posesOf(state);
-  p.compiled = std::async(std::launch::async, compileAside, textOf(model, *p.trees), engine_.isPaced());
+  reportSkipped(Constraints(model, *p.trees));
+  // The thread works on copies: those here change meanwhile.
+  p.compiled = std::async(std::launch::async, compileAside, model, *p.trees, step_, sizes_, engine_.isPaced());
 }
 
 void MujocoSolver::abandon() {

@@ -48,7 +48,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   /// After a step: the model that was compiled aside takes over when its time has come.
   void takePending(const engine::Model& model);
   void refuse(const std::string& why);
-  std::string textOf(const engine::Model& model, const Trees& trees);
+  /// Logs the constraints that are left out, once each.
+  void reportSkipped(const Constraints& constraints);
 
   LibraryGuard library_;
   MujocoEngine& engine_;
