@@ -10,7 +10,7 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
   clear();
   std::vector<Effector*> effectors;
   root.collect(effectors);
-  for (Effector* e : effectors) entries_.push_back({e->predicate(), e});
+  for (Effector* e : effectors) entries_.push_back({.predicate = e->predicate(), .effector = e, .object = e});
 
   // Sort by predicate; of equal ones keep the last in tree order.
   std::stable_sort(entries_.begin(), entries_.end(),
@@ -22,7 +22,6 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
       ++i;
 
   for (Entry& e : entries_) {
-    e.object = e.effector.get();
     if (e.effector->as<ISyncEffector>()) syncPredicate_ = e.predicate;
     auto modifiers = ModifierChain::of(*e.effector);
     if (!modifiers) continue;

@@ -20,8 +20,11 @@ int stepsToCompile(std::size_t bodies) {
   constexpr std::size_t kBodySquaresPerStep = 1400;
   return 1 + static_cast<int>(bodies * bodies / kBodySquaresPerStep);
 }
-/// Compiles in a thread of its own. In real time it has the lowest priority, so that it does not slow the simulation.
-Compiled compileAside(const engine::Model& model, const Trees& trees, double step, Sizes sizes, bool paced) {
+
+/// Compiles in a thread of its own, from copies that end there. In real time it has the lowest priority, so that it
+/// does not slow the simulation.
+// NOLINTNEXTLINE(performance-unnecessary-value-param)
+Compiled compileAside(engine::Model model, Trees trees, double step, Sizes sizes, bool paced) {
   if (paced) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
   return compileWorld(toMjcf(model, trees, step, sizes, Constraints(model, trees)), true);
 }
@@ -113,20 +116,19 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.trees.emplace(model, state);
   p.poses = posesOf(state);
   reportSkipped(Constraints(model, *p.trees));
-  // The thread works on copies: those here change meanwhile.
   p.compiled = std::async(std::launch::async, compileAside, model, *p.trees, step_, sizes_, engine_.isPaced());
 }
 
 void MujocoSolver::abandon() {
   std::erase_if(abandoned_,
                 [](const auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
-  if (pending_.trees) abandoned_.push_back(std::move(pending_.compiled));
+  if (pending_.compiled.valid()) abandoned_.push_back(std::move(pending_.compiled));
   pending_ = {};
 }
 
 void MujocoSolver::takePending(const engine::Model& model) {
   Pending& p = pending_;
-  if (!p.trees) return;
+  if (!p.compiled.valid()) return;
   ++p.waited;
   --p.stepsLeft;
   const bool ready = p.compiled.wait_for(std::chrono::seconds(0)) == std::future_status::ready;

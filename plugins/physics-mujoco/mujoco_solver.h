@@ -33,9 +33,9 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
  private:
   /// A model that is being compiled in a second thread.
   struct Pending {
-    std::optional<Trees> trees;  ///< nullopt: there is none
-    std::vector<Pose> poses;     ///< of which they were made
-    std::future<Compiled> compiled;
+    std::future<Compiled> compiled;  ///< not valid: there is none
+    std::optional<Trees> trees;
+    std::vector<Pose> poses;   ///< of which they were made
     std::uint64_t number = 0;  ///< of all models that the engine compiles aside
     int stepsLeft = 0;         ///< until it takes over
     int waited = 0;            ///< steps since the first change that is not in yet
@@ -48,7 +48,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   /// After a step: the model that was compiled aside takes over when its time has come.
   void takePending(const engine::Model& model);
   void refuse(const std::string& why);
-  /// Logs the constraints that are left out, once each.
+  /// Logs the constraints that are left out and were not before.
   void reportSkipped(const Constraints& constraints);
 
   LibraryGuard library_;
@@ -56,7 +56,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   std::unique_ptr<MujocoWorld> world_;
   Sizes sizes_;
   double step_ = 0.005;       ///< s
-  std::vector<int> skipped_;  ///< constraints that the last text leaves out
+  std::vector<int> skipped_;  ///< constraints that the last model leaves out
   bool full_ = false;         ///< no more room can be had
   std::vector<Pose> poses_;   ///< by body: those with which the world was compiled; empty: it has changed since
   std::string refused_;       ///< why the last model that was refused was

@@ -6,6 +6,7 @@
 
 #include "about.h"
 #include "foxglove.h"
+#include "shape.h"
 #include "snapshots.h"
 #include "spark/error.h"
 #include "spark/state.h"
@@ -106,7 +107,7 @@ void Recorder::finish() {
 }
 
 bool Recorder::put(const Input& input) {
-  if (recording_) inputs_.add(input);
+  if (recording_ && !failed_) inputs_.add(input);
   return true;
 }
 
@@ -123,7 +124,7 @@ bool Recorder::decide(std::string_view what, std::uint64_t key, bool live, bool 
 }
 
 void Recorder::endCycle(const Event& event) {
-  if (!recording_) return;
+  if (!recording_ || failed_) return;
   // All that came in this cycle is known now; time is that of its end.
   const double end = simulation_ ? simulation_->time() : event.time;
   lastTime_ = recorder::nanoseconds(end);
@@ -138,7 +139,6 @@ void Recorder::endCycle(const Event& event) {
   }
   drawFrame(lastTime_);
   if (match_ && monitor_) match_->take(*monitor_, event.cycle, end, structure_ == kernel().structureVersion());
-  if (failed_) return;
   if (const std::string why = recording_->failure(); !why.empty()) {
     failed_ = true;
     kernel().log().error("{}: the recording {} ends at {:.2f} s: {}", path(), file_, end, why);
@@ -151,7 +151,7 @@ void Recorder::keyFrame(mcap::Time time) {
   snapshots_->take(*state);
   stateCycle_ = state->cycle;
   stateBytes_ = state->state.size();
-  recording_->later(stateBytes_, [channel = stateChannel_, state, time](const auto& put) {
+  recording_->later(stateBytes_ + state->shape->memory(), [channel = stateChannel_, state, time](const auto& put) {
     put(channel, time, recorder::snapshotBytes(*state));
   });
 }

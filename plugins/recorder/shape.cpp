@@ -76,6 +76,7 @@ void TreeShape::list(const Leaf& leaf) {
   for (const Property* p : leaf.classObject()->properties())
     if (p->isConfiguration()) o.settings.emplace_back(p->name, p->get(leaf));
   ids_.push_back(leaf.id());
+  memory_ += sizeof o + sizeof leaf.id() + o.settings.capacity() * sizeof o.settings.front();
 }
 
 void TreeShape::listMade(Kernel& kernel, const std::vector<const Leaf*>& made) {

@@ -14,7 +14,8 @@
 namespace spark {
 
 /// The shape of a kernel's tree, without /classes, /plugins and /sys/host. When a config has run its objects are there;
-/// those with a greater id were made by the run, one by one or by the import of a file. Simulation thread.
+/// those with a greater id were made by the run, one by one or by the import of a file. Simulation thread, but for
+/// the const functions without a kernel, which any thread may call: nothing in it refers to an object.
 class TreeShape {
  public:
   /// The shape of now. `mark`: the greatest id of the objects that the config made.
@@ -25,6 +26,8 @@ class TreeShape {
 
   /// True if the tree has exactly the objects of which it was taken.
   bool isHere(Kernel& kernel) const;
+  /// What it takes [bytes], about.
+  std::size_t memory() const { return memory_; }
   /// configurationHash() of then.
   std::uint64_t configuration() const { return configuration_; }
   /// Makes the tree the same. Throws Error where that cannot be done.
@@ -54,6 +57,7 @@ class TreeShape {
   std::size_t after(std::size_t at) const;
 
   std::uint64_t configuration_ = 0;
+  std::size_t memory_ = 0;
   std::vector<Made> made_;          ///< in the order in which they were made
   std::vector<Object> objects_;     ///< in tree order
   std::vector<std::uint64_t> ids_;  ///< of objects_; empty if it was read

@@ -68,8 +68,12 @@ void Snapshots::restore(const Snapshot& snapshot, std::optional<std::uint64_t> s
         path());
 }
 
+std::string Snapshots::write(const Snapshot& snapshot) const {
+  if (!snapshot.shape) throw Error(fmt::format("{}: expected a whole snapshot, found a state alone", path()));
+  return recorder::snapshotBytes(snapshot);
+}
+
 std::string recorder::snapshotBytes(const Snapshot& snapshot) {
-  if (!snapshot.shape) throw Error("expected a whole snapshot, found a state alone");
   StateWriter out(true);
   out.write(snapshot.cycle);
   out.write(snapshot.shape->configuration());

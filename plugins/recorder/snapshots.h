@@ -14,7 +14,7 @@
 namespace spark {
 
 namespace recorder {
-/// A whole snapshot as bytes, in any thread. Throws Error for a state alone.
+/// A whole snapshot as bytes, in any thread. Precondition: it has a shape.
 std::string snapshotBytes(const Snapshot& snapshot);
 }  // namespace recorder
 
@@ -27,7 +27,7 @@ class Snapshots : public Node, public ISnapshots {
   void take(Snapshot& out, bool whole) override;
   void restore(const Snapshot& snapshot, std::optional<std::uint64_t> seed) override;
   void load(const std::string& file, double seconds, std::optional<std::uint64_t> seed) override;
-  std::string write(const Snapshot& snapshot) const override { return recorder::snapshotBytes(snapshot); }
+  std::string write(const Snapshot& snapshot) const override;
   Snapshot read(std::string_view bytes) const override;
 
   /// Writes a file with a snapshot of now, and the texts that the run was made of. Throws Error if that fails.

@@ -45,6 +45,17 @@ class TestBomb : public Effector {
   }
 };
 
+/// `(thief m1 m2)`: removes the siblings of those names.
+class TestThief : public Effector {
+  SPARK_CLASS(TestThief, Effector)
+ public:
+  static void describe(Description<TestThief>& d) { d.doc("Removes its siblings."); }
+  std::string act(const Element& action) override {
+    for (std::size_t i = 1; i < action.size(); ++i) parent()->remove(*parent()->child(action.at(i).text()));
+    return {};
+  }
+};
+
 /// Logs agents that connect and leave.
 class TestRule : public ControlAspect {
   SPARK_CLASS(TestRule, ControlAspect)
@@ -220,6 +231,29 @@ TEST_CASE("Control aspects are notified of agents that connect and leave") {
   { Client c = robot(a); }
   applyActions(a, 2);
   REQUIRE(actionLog() == ActionLog{"come /usr/scene/AgentAspect1", "go /usr/scene/AgentAspect1"});
+}
+
+TEST_CASE("An action may remove the effectors of those that follow it") {
+  Arena a;
+  a.kernel.registerClass<TestThief>();
+  Client c = robot(a);
+  AgentAspect& agent = *a.control->agents()[0];
+  agent.create("TestThief", "thief");
+  for (const char* motor : {"m1", "m2", "m3"}) agent.create("TestMotor", motor);
+  a.cycle();
+  ActionLog expected;
+  const auto say = [&](const char* message, const ActionLog& done) {
+    expected.insert(expected.end(), done.begin(), done.end());
+    c.send(message);
+    c.arrive();
+    a.cycle();
+    REQUIRE(actionLog() == expected);
+  };
+  // The first message teaches the order of the actions.
+  say("(thief)(m1 1)(m2 2)(m3 3)", {"1 m1 1", "1 m2 2", "1 m3 3"});
+  say("(thief m1 m2)(m1 4)(m2 5)(m3 6)", {"1 m3 6"});
+  say("(thief)(m1 7)(m3 8)(thief m3)(m3 9)", {"1 m3 8"});
+  say("(thief)(m3 10)", {});
 }
 
 TEST_CASE("A perceptor or effector that throws is named in the log, and its agent and the host continue") {

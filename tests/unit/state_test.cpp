@@ -60,6 +60,39 @@ TEST_CASE("Two streams of one node and purpose differ, and a new node does not c
   CHECK(same.bits() == first);
 }
 
+TEST_CASE("Texts are saved with all their bytes, and a list of them as the list that is their value") {
+  for (const std::size_t length : {0, 1, 7, 8, 9, 16, 21}) {
+    std::string text(length, '\xff');
+    for (std::size_t i = 0; i < length; ++i) text[i] = static_cast<char>(250 + i);
+    StateWriter out(true);
+    out.write(text);
+    CHECK(out.bytes().size() == 8 + (length + 7) / 8 * 8);
+    StateReader in(out.bytes());
+    CHECK(in.readString() == text);
+    CHECK(in.atEnd());
+  }
+  const std::vector<std::string> names{"", "short", "a name that is longer than a word"};
+  StateWriter direct(true), value(true);
+  direct.write(names);
+  value.write(Convert<std::vector<std::string>>::to(names));
+  CHECK(direct.bytes() == value.bytes());
+  CHECK(direct.hash() == value.hash());
+}
+
+TEST_CASE("A tree has the same state whether its order is known, is old, or it is not linked") {
+  Core core;
+  Thing& a = core.make("a");
+  for (int i = 0; i < 20; ++i) a.create("Thing", fmt::format("t{}", i)).asNode()->create("Thing", "inner");
+  core.kernel.updateOrder();
+  const std::string ordered = saved(core.kernel.root());
+  a.remove(a.create("Thing", "late"));
+  CHECK(saved(core.kernel.root()) == ordered);
+  const std::string below = saved(a);
+  core.kernel.updateOrder();
+  CHECK(saved(a) == below);
+  CHECK(ordered.find(below) != std::string::npos);
+}
+
 TEST_CASE("Random draws stay in their range and have the expected distribution") {
   RandomStream s(42);
   double sum = 0, squares = 0;
