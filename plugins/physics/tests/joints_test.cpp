@@ -1,3 +1,4 @@
+#include "api/scene_calls.h"
 #include "physics_house.h"
 
 using namespace spark;
@@ -135,6 +136,30 @@ TEST_CASE("each setting of a joint has a getter that returns the value that was 
   CHECK(j.as<IJoint>()->parameter(engine::JointParameter::velocity, 0) == Approx(kPi));
   j.as<IJoint>()->setParameter(engine::JointParameter::velocity, 0, 1.0);
   CHECK(number(j, "getLinearMotorVelocity", {0}) == 1);
+}
+
+TEST_CASE("a joint is written with its anchor and axis while it is as it was made, and not when it has moved") {
+  Pair p;
+  Leaf& j = p.joint("HingeJoint");
+  p.call(j, "setAnchor", {0.1, 0.2, 0.5});
+  p.call(j, "setAxis", {0.0, 1.0, 0.0});
+  const auto written = [&](const char* method) -> List {
+    for (const SceneCall& c : j.as<ISceneCalls>()->sceneCalls())
+      if (c.method == method) return c.arguments;
+    return {};
+  };
+  CHECK(written("attach") == List{"../body", "../../parent/body"});
+  const List anchor = written("setAnchor");
+  REQUIRE(anchor.size() == 3);
+  for (int i = 0; i < 3; ++i) CHECK(anchor[i].toNumber() == Approx(List{0.1, 0.2, 0.5}[i].toNumber()).margin(1e-6));
+
+  // Bodies that were put elsewhere, and a hinge that has turned.
+  p.childBody().setPosition({0, 0, 0.25});
+  CHECK_THROWS_WITH(written("attach"), Catch::Contains("its anchors are 0.25 m apart"));
+  p.childBody().setPosition({0, 0, 0});
+  p.childBody().setAngularVelocity({1, 0, 0});
+  p.step(5);
+  CHECK_THROWS_WITH(written("attach"), Catch::Contains("its axis 0 is at"));
 }
 
 TEST_CASE("a universal joint returns both angles") {
