@@ -76,7 +76,12 @@ void TreeShape::list(const Leaf& leaf) {
   for (const Property* p : leaf.classObject()->properties())
     if (p->isConfiguration()) o.settings.emplace_back(p->name, p->get(leaf));
   ids_.push_back(leaf.id());
-  memory_ += sizeof o + sizeof leaf.id() + o.settings.capacity() * sizeof o.settings.front();
+}
+
+std::size_t TreeShape::memory() const {
+  std::size_t bytes = 0;
+  for (const Object& o : objects_) bytes += sizeof o + o.settings.capacity() * sizeof o.settings.front();
+  return bytes;
 }
 
 void TreeShape::listMade(Kernel& kernel, const std::vector<const Leaf*>& made) {
@@ -140,13 +145,6 @@ void TreeShape::make(Kernel& kernel) const {
       parent.create(m.what, m.name.substr(0, m.name.find('[')));
     }
   }
-}
-
-/// The index behind an object and all below it.
-std::size_t TreeShape::after(std::size_t at) const {
-  for (std::int64_t left = 1; left > 0 && at < objects_.size(); ++at)
-    left += std::max<std::int64_t>(objects_[at].children, 0) - 1;
-  return at;
 }
 
 namespace {

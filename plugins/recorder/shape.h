@@ -26,8 +26,8 @@ class TreeShape {
 
   /// True if the tree has exactly the objects of which it was taken.
   bool isHere(Kernel& kernel) const;
-  /// What it takes [bytes], about.
-  std::size_t memory() const { return memory_; }
+  /// The memory of its objects and their settings [bytes], without that of long texts.
+  std::size_t memory() const;
   /// configurationHash() of then.
   std::uint64_t configuration() const { return configuration_; }
   /// Makes the tree the same. Throws Error where that cannot be done.
@@ -54,10 +54,8 @@ class TreeShape {
   void listMade(Kernel& kernel, const std::vector<const Leaf*>& made);
   void make(Kernel& kernel) const;
   void prune(Leaf& leaf, std::size_t& at) const;
-  std::size_t after(std::size_t at) const;
 
   std::uint64_t configuration_ = 0;
-  std::size_t memory_ = 0;
   std::vector<Made> made_;          ///< in the order in which they were made
   std::vector<Object> objects_;     ///< in tree order
   std::vector<std::uint64_t> ids_;  ///< of objects_; empty if it was read

@@ -91,6 +91,13 @@ TEST_CASE("A tree has the same state whether its order is known, is old, or it i
   core.kernel.updateOrder();
   CHECK(saved(a) == below);
   CHECK(ordered.find(below) != std::string::npos);
+
+  auto loose = core.kernel.classOf("Thing").create();
+  for (const char* name : {"first", "second"})
+    loose->asNode()->create("Thing", name).asNode()->create("Thing", "inner");
+  const std::string unlinked = saved(*loose);
+  CHECK(unlinked.size() == 5 * saved(*core.kernel.classOf("Thing").create()).size());
+  CHECK(saved(core.top->add(std::move(loose))) == unlinked);
 }
 
 TEST_CASE("Random draws stay in their range and have the expected distribution") {

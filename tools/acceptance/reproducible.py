@@ -196,7 +196,8 @@ def snapshots():
 def cpu_of_simulation(arguments, seconds):
     """CPU time [s] of the simulation's thread in an 11 v 11 inside the host, which plays from 2 s on: robots that wait for their kick-off cost little."""
     host = subprocess.Popen([BIN / "sparkhost", "--config", "soccer.lua", "--set", "team=Red Blue", "--set", "Soccer.AutomaticKickOff=true",
-                             "--set", "Soccer.WaitBeforeKickOff=2", "--rate", "max", "--duration", str(seconds), "--web-port", "0", "--agent-port", "0", "--monitor-port", "0", "--log-level", "error", *arguments],
+                             "--set", "Soccer.WaitBeforeKickOff=2", "--rate", "max", "--duration", str(seconds), "--web-port", "0", "--agent-port", "0",
+                             "--monitor-port", "0", "--log-level", "error", *arguments],
                             stdout=subprocess.DEVNULL)
     spent = 0
     while host.poll() is None:

@@ -15,7 +15,7 @@ namespace spark {
 
 namespace {
 constexpr std::size_t kManyChildren = 64;         // from this number on, children are found by an index of names
-constexpr std::size_t kAhead = 8, kVisited = 64;  // of the node so many places ahead so many bytes are prefetched
+constexpr std::size_t kAhead = 8, kVisited = 64;  // prefetching: distance [nodes], bytes of each
 
 /// True for /classes and /plugins, whose children only the kernel adds.
 bool isKernelFolder(const Node& node) {

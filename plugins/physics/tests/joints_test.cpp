@@ -152,6 +152,9 @@ TEST_CASE("a joint is written with its anchor and axis while it is as it was mad
   const List anchor = written("setAnchor");
   REQUIRE(anchor.size() == 3);
   for (int i = 0; i < 3; ++i) CHECK(anchor[i].toNumber() == Approx(List{0.1, 0.2, 0.5}[i].toNumber()).margin(1e-6));
+  const List axis = written("setLocalAxis");
+  REQUIRE(axis.size() == 4);
+  for (int i = 0; i < 4; ++i) CHECK(axis[i].toNumber() == Approx(i == 2 ? 1 : 0).margin(1e-6));
 
   // Bodies that were put elsewhere, and a hinge that has turned.
   p.childBody().setPosition({0, 0, 0.25});
