@@ -1,205 +1,355 @@
 #include "input_codec.h"
 
+#include <algorithm>
+#include <map>
+#include <optional>
+
+#include "range_coder.h"
 #include "spark/error.h"
 
 namespace spark::recorder {
 
 namespace {
-// Signed numbers near zero become small unsigned ones.
-std::uint64_t folded(std::int64_t v) {
-  return (static_cast<std::uint64_t>(v) << 1) ^ static_cast<std::uint64_t>(v >> 63);
-}
-std::int64_t unfolded(std::uint64_t v) { return static_cast<std::int64_t>((v >> 1) ^ (0 - (v & 1))); }
+constexpr char kGoesOn = 0, kBegins = 1;                   // first byte of a piece
+constexpr unsigned kEnd = 8;                               // among kinds of inputs: there are no more
+constexpr std::int64_t kMostTime = std::int64_t{1} << 53;  // us
+constexpr std::size_t kMostBytes = 256u << 20;             // of the inputs of a piece
 
-void putNumber(std::string& out, std::uint64_t v) {
-  for (; v >= 0x80; v >>= 7) out += static_cast<char>(v | 0x80);
-  out += static_cast<char>(v);
-}
-
-std::uint64_t takeNumber(std::string_view& bytes) {
-  std::uint64_t out = 0;
-  for (unsigned shift = 0; shift < 64; shift += 7) {
-    if (bytes.empty()) break;
-    const auto b = static_cast<unsigned char>(bytes.front());
-    bytes.remove_prefix(1);
-    out |= static_cast<std::uint64_t>(b & 0x7f) << shift;
-    if ((b & 0x80) == 0) return out;
-  }
-  throw Error("inputs are damaged: a number has no end");
-}
-
-std::string takeText(std::string_view& bytes) {
-  const std::uint64_t n = takeNumber(bytes);
-  if (n > bytes.size()) throw Error("inputs are damaged: a text is longer than what is left");
-  std::string out(bytes.substr(0, n));
-  bytes.remove_prefix(n);
-  return out;
-}
+constexpr int kMarks = 8;  // characters 1 to 8 stand for numbers with 0 to 7 decimals
+constexpr std::int64_t kMostDigits = std::int64_t{1} << 53;
+constexpr unsigned kClientBits = 8, kWordBits = 10;
+constexpr std::size_t kMostClients = (1u << kClientBits) - 1, kMostWords = 1u << kWordBits;
+constexpr std::size_t kMostWordLength = 200, kMostNumbers = 16, kMostNumbersInAll = 1024;
+constexpr std::uint32_t kTextEnd = 0, kNewWord = 1, kFirstWord = 2;  // among words
+constexpr unsigned kChanges = 24;  // differences are told apart by how many bits the one before had
 
 /// True if inputs of a kind have place, key and text; the others have a number only.
 bool isLong(Input::Kind kind) { return kind != Input::Kind::cycle && kind != Input::Kind::time; }
 
-constexpr std::int64_t kMostTime = std::int64_t{1} << 53;  // us
-
-constexpr char kMostDecimals = 6;
-constexpr std::uint64_t kMostDigits = 1u << 31;  // the number that they are is less
-constexpr unsigned char kPlain = 0x80;           // of a kind
-constexpr std::size_t kPlanes = 4, kMostLengthBytes = 10;
-
-bool isMark(char c) { return c >= 1 && c <= kMostDecimals; }
+bool isMark(char c) { return c >= 1 && c <= kMarks; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
+bool isLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-/// A decimal number at the front of a text that is written back with the same characters. length 0: there is none.
+/// A number that is written back with the same characters.
 struct Decimal {
-  std::size_t length = 0;
-  std::uint32_t code = 0;
-  char decimals = 0;
+  std::size_t length = 0;  ///< of its characters; 0: there is none
+  int decimals = 0;
+  std::int64_t value = 0;  ///< its digits; -1 - them if it is negative, for there is -0.0
 };
 
+/// The number at the front of a text.
 Decimal decimalAt(std::string_view text) {
   std::size_t at = text.starts_with('-') ? 1 : 0;
+  const bool negative = at > 0;
   const std::size_t first = at;
-  std::uint64_t digits = 0;
+  std::int64_t digits = 0;
   const auto read = [&] {
-    for (; at < text.size() && isDigit(text[at]) && digits < kMostDigits; ++at)
-      digits = 10 * digits + static_cast<std::uint64_t>(text[at] - '0');
+    for (; at < text.size() && isDigit(text[at]) && digits < kMostDigits; ++at) digits = 10 * digits + (text[at] - '0');
   };
   read();
-  if (at == first || at == text.size() || text[at] != '.' || (text[first] == '0' && at > first + 1)) return {};
-  const std::size_t point = at++;
-  read();
-  const std::size_t decimals = at - point - 1;
-  if (decimals == 0 || decimals > kMostDecimals || digits >= kMostDigits) return {};
-  if (at < text.size() && isDigit(text[at])) return {};
-  return {at, static_cast<std::uint32_t>(2 * digits + first), static_cast<char>(decimals)};
+  if (at == first || (text[first] == '0' && at > first + 1)) return {};
+  std::size_t decimals = 0;
+  if (at + 1 < text.size() && text[at] == '.' && isDigit(text[at + 1])) {
+    const std::size_t point = at++;
+    read();
+    decimals = at - point - 1;
+  }
+  if (decimals >= kMarks || digits >= kMostDigits || (at < text.size() && isDigit(text[at]))) return {};
+  return {at, static_cast<int>(decimals), negative ? -1 - digits : digits};
 }
 
-void putDecimal(std::string& out, std::uint32_t code, char decimals) {
-  if (code & 1) out += '-';
-  std::string digits = std::to_string(code >> 1);
-  const std::size_t n = static_cast<unsigned char>(decimals);
+void putDecimal(std::string& out, std::int64_t value, int decimals) {
+  if (value < 0) out += '-';
+  std::string digits = std::to_string(value < 0 ? -1 - value : value);
+  const auto n = static_cast<std::size_t>(decimals);
   if (digits.size() <= n) digits.insert(0, n + 1 - digits.size(), '0');
-  out.append(digits, 0, digits.size() - n).append(1, '.').append(digits, digits.size() - n, n);
+  out.append(digits, 0, digits.size() - n);
+  if (n > 0) out.append(1, '.').append(digits, digits.size() - n, n);
 }
 
-/// The numbers of a piece, in their order.
-class Decimals {
- public:
-  explicit Decimals(std::string_view planes) : planes_(planes), count_(planes.size() / kPlanes) {
-    if (planes.size() % kPlanes != 0) throw Error("inputs are damaged: a number lacks bytes");
-  }
-  std::uint32_t take() {
-    if (at_ == count_) throw Error("inputs are damaged: a text has more numbers than there are");
-    std::uint32_t out = 0;
-    for (std::size_t p = 0; p < kPlanes; ++p)
-      out |= std::uint32_t{static_cast<unsigned char>(planes_[p * count_ + at_])} << (8 * p);
-    ++at_;
-    return out;
-  }
+/// The length of the first word of a text: it ends before the next parenthesis that opens.
+std::size_t wordLength(std::string_view text) { return std::min(text.find('(', 1), text.size()); }
 
- private:
-  std::string_view planes_;
-  std::size_t count_, at_ = 0;
+/// A word without its numbers.
+struct Pattern {
+  std::string text;  ///< marks in place of numbers
+  std::vector<std::int64_t> numbers;
 };
 
-/// A text with its numbers.
-std::string filled(std::string_view text, Decimals& numbers) {
+/// Empty if the word must stand as it is.
+std::optional<Pattern> patternOf(std::string_view word) {
+  Pattern out;
+  char before = 0;
+  while (!word.empty()) {
+    const bool inside = isDigit(before) || isLetter(before) || before == '.';
+    const Decimal found = inside ? Decimal{} : decimalAt(word);
+    const std::size_t n = std::max<std::size_t>(found.length, 1);
+    if (found.length > 0) {
+      out.text += static_cast<char>(1 + found.decimals);
+      out.numbers.push_back(found.value);
+    } else {
+      if (isMark(word.front())) return {};
+      out.text += word.front();
+    }
+    before = word[n - 1];
+    word.remove_prefix(n);
+    if (out.text.size() > kMostWordLength || out.numbers.size() > kMostNumbers) return {};
+  }
+  return out;
+}
+
+/// The text of a pattern with numbers, one for each mark.
+template <class Slots>
+std::string filled(std::string_view pattern, const Slots& slots) {
   std::string out;
-  for (const char c : text)
+  std::size_t i = 0;
+  for (const char c : pattern)
     if (isMark(c))
-      putDecimal(out, numbers.take(), c);
+      putDecimal(out, slots[i++].value, c - 1);
     else
       out += c;
   return out;
 }
-}  // namespace
 
-void InputWriter::text(std::string_view v) {
-  putNumber(bytes_, v.size());
-  bytes_ += v;
+std::int64_t sum(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) + static_cast<std::uint64_t>(b));
+}
+std::int64_t difference(std::int64_t a, std::int64_t b) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b));
 }
 
-/// Puts the text without its numbers into template_. False if it must stand as it is.
-bool InputWriter::split(std::string_view text) {
-  const std::size_t before = decimals_.size();
-  template_.clear();
-  bool inside = false;  // a number: its digits are no beginning of another one
-  while (!text.empty()) {
-    const Decimal found = inside ? Decimal{} : decimalAt(text);
-    if (found.length > 0) {
-      template_ += found.decimals;
-      decimals_.push_back(found.code);
-      text.remove_prefix(found.length);
-      inside = true;
-      continue;
+/// Kinds of changes: by the bits of the one before, and by the signs of the value and of that change.
+unsigned bitsOf(std::int64_t change) {
+  const auto size = static_cast<std::uint64_t>(change);
+  return std::min(static_cast<unsigned>(std::bit_width(change < 0 ? 0 - size : size)), kChanges - 1);
+}
+unsigned signsOf(std::int64_t value, std::int64_t change) {
+  const auto sign = [](std::int64_t v) { return v < 0 ? 0u : v == 0 ? 1u : 2u; };
+  return 3 * sign(value) + sign(change);
+}
+}  // namespace
+
+/// What is known from the inputs before: the same where they are written and where they are read, and so is the
+/// description of the format; `Coder` is one of range_coder.h.
+struct InputModel {
+  /// Codes an input; false: there are no more. `in`: the input; if it is read, an empty one that gets it.
+  template <class Coder>
+  bool code(Coder& coder, bool more, OwnInput& in);
+
+ private:
+  /// A number of a word, as a client sent it last.
+  struct Slot {
+    std::int64_t value = 0, change = 0;  ///< the change is that from the value before
+  };
+  using SlotNumber = Number<kChanges, 9>;
+  /// A word that clients sent.
+  struct Word {
+    std::string pattern;
+    std::vector<SlotNumber> numbers{};
+    Chance followed{};  ///< that the word follows it which followed when the client sent it last
+  };
+  struct Client {
+    std::string place;
+    std::uint64_t key = 0;
+    std::size_t next = 0;  ///< the client that followed
+    struct Said {
+      std::uint32_t next = kTextEnd;  ///< the word that followed
+      std::vector<Slot> slots{};
+    };
+    std::vector<Said> said{};  ///< by word
+    Said& about(std::uint32_t word) {
+      if (word >= said.size()) said.resize(word + 1);
+      return said[word];
     }
-    const char c = text.front();
-    if (isMark(c)) {
-      decimals_.resize(before);
-      return false;
-    }
-    inside = isDigit(c) || c == '.';
-    template_ += c;
-    text.remove_prefix(1);
-  }
+  };
+
+  template <class Coder>
+  void spell(Coder& coder, std::string& text);
+  template <class Coder>
+  Client& codeClient(Coder& coder, OwnInput& in);
+  template <class Coder>
+  void codeText(Coder& coder, Client& client, std::string& text);
+  template <class Coder>
+  bool codeNewWord(Coder& coder, std::string& raw, std::optional<Pattern>& pattern);
+  std::uint32_t idOf(const std::optional<Pattern>& pattern) const;
+  bool hasRoomFor(std::size_t numbers) const;
+
+  Symbol<4> kinds_[kEnd + 1];
+  unsigned lastKind_ = kEnd;
+  Number<> numbers_[kEnd], keys_, textLengths_;
+  std::int64_t lastNumbers_[kEnd] = {};
+  Symbol<8> characters_;
+  Symbol<kClientBits> whichClient_;
+  Symbol<kWordBits> whichWord_;
+  Chance clientFollowed_, wordKept_;
+  std::vector<Client> clients_ = std::vector<Client>(1);  ///< the first one is none
+  Client unknown_;                                        ///< one for which there is no room
+  std::size_t lastClient_ = 0;
+  std::vector<Word> words_ = std::vector<Word>(kFirstWord);
+  std::map<std::string, std::uint32_t, std::less<>> ids_;  ///< of words_, by pattern
+  std::size_t numbersOfWords_ = 0;
+};
+
+template <class Coder>
+bool InputModel::code(Coder& coder, bool more, OwnInput& in) {
+  const unsigned kind = kinds_[lastKind_].code(coder, more ? static_cast<unsigned>(in.kind) : kEnd);
+  if (kind > kEnd) throw Error("inputs are damaged: an unknown kind");
+  lastKind_ = kind;
+  if (kind == kEnd) return false;
+  in.kind = static_cast<Input::Kind>(kind);
+  std::int64_t& last = lastNumbers_[kind];
+  last = in.number = sum(last, numbers_[kind].code(coder, difference(in.number, last)));
+  if (in.kind == Input::Kind::time && (in.number > kMostTime || in.number < -kMostTime))
+    throw Error("inputs are damaged: a time is out of range");
+  if (isLong(in.kind)) codeText(coder, codeClient(coder, in), in.text);
   return true;
 }
 
-void InputWriter::add(const Input& input) {
-  const auto kind = static_cast<unsigned char>(input.kind);
-  const bool isSplit = isLong(input.kind) && split(input.text);
-  bytes_ += static_cast<char>(isLong(input.kind) && !isSplit ? kind | kPlain : kind);
-  std::int64_t n = input.number;
-  if (input.kind == Input::Kind::time) n -= std::exchange(lastTime_, n);
-  putNumber(bytes_, folded(n));
-  if (!isLong(input.kind)) return;
-  text(input.place);
-  putNumber(bytes_, input.key);
-  text(isSplit ? template_ : input.text);
+template <class Coder>
+void InputModel::spell(Coder& coder, std::string& text) {
+  const std::int64_t size = textLengths_.code(coder, static_cast<std::int64_t>(text.size()));
+  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes) throw Error("inputs are damaged: a text is too long");
+  for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
+    if (Coder::kReads) text.push_back(0);
+    text[i] = static_cast<char>(characters_.code(coder, static_cast<unsigned char>(text[i])));
+  }
 }
 
-std::string InputWriter::take() {
-  lastTime_ = 0;
-  std::string out;
-  if (bytes_.empty()) return out;
-  out.reserve(kMostLengthBytes + bytes_.size() + kPlanes * decimals_.size());
-  putNumber(out, bytes_.size());
-  out += bytes_;
-  for (std::size_t p = 0; p < kPlanes; ++p)
-    for (const std::uint32_t v : decimals_) out += static_cast<char>(v >> (8 * p));
-  bytes_.clear();
-  decimals_.clear();
+/// Codes place and key.
+template <class Coder>
+InputModel::Client& InputModel::codeClient(Coder& coder, OwnInput& in) {
+  std::size_t& next = clients_[lastClient_].next;
+  const auto known = std::find_if(clients_.begin() + 1, clients_.end(),
+                                  [&](const Client& c) { return c.key == in.key && c.place == in.place; });
+  std::size_t client = known == clients_.end() ? 0 : static_cast<std::size_t>(known - clients_.begin());
+  client = coder.bit(clientFollowed_, client == next) ? next : whichClient_.code(coder, static_cast<unsigned>(client));
+  if (client >= clients_.size()) throw Error("inputs are damaged: an unknown client");
+  next = client;  // of the last one
+  if (client == 0) {
+    spell(coder, in.place);
+    in.key = static_cast<std::uint64_t>(keys_.code(coder, static_cast<std::int64_t>(in.key)));
+    if (clients_.size() == kMostClients) return unknown_ = Client{};
+    client = next = clients_.size();
+    clients_.push_back({in.place, in.key});  // `next` is no more
+  } else if (Coder::kReads) {
+    in.place = clients_[client].place;
+    in.key = clients_[client].key;
+  }
+  lastClient_ = client;
+  return clients_[client];
+}
+
+bool InputModel::hasRoomFor(std::size_t numbers) const {
+  return words_.size() < kMostWords && numbersOfWords_ + numbers <= kMostNumbersInAll;
+}
+
+std::uint32_t InputModel::idOf(const std::optional<Pattern>& pattern) const {
+  const auto found = pattern ? ids_.find(pattern->text) : ids_.end();
+  return found == ids_.end() ? kNewWord : found->second;
+}
+
+/// Codes a word that is not known. False: it stands as it is, in `raw`, and is not kept.
+template <class Coder>
+bool InputModel::codeNewWord(Coder& coder, std::string& raw, std::optional<Pattern>& pattern) {
+  const bool keeps = coder.bit(wordKept_, pattern && hasRoomFor(pattern->numbers.size()));
+  if (Coder::kReads) pattern.emplace();
+  spell(coder, keeps ? pattern->text : raw);
+  if (!keeps) return false;
+  const auto numbers = static_cast<std::size_t>(std::count_if(pattern->text.begin(), pattern->text.end(), isMark));
+  if (numbers > kMostNumbers || !hasRoomFor(numbers) || idOf(pattern) != kNewWord)
+    throw Error("inputs are damaged: a word that is none");
+  ids_[pattern->text] = static_cast<std::uint32_t>(words_.size());
+  words_.push_back({pattern->text, std::vector<SlotNumber>(numbers)});
+  numbersOfWords_ += numbers;
+  return true;
+}
+
+template <class Coder>
+void InputModel::codeText(Coder& coder, Client& client, std::string& text) {
+  std::string_view rest = text;  // that is to be written
+  for (std::uint32_t before = kTextEnd;;) {
+    std::string raw(rest.substr(0, wordLength(rest)));
+    rest.remove_prefix(raw.size());
+    std::optional<Pattern> pattern = Coder::kReads ? std::nullopt : patternOf(raw);
+    const std::uint32_t guess = client.about(before).next;
+    std::uint32_t id = raw.empty() ? kTextEnd : idOf(pattern);
+    id = coder.bit(words_[before].followed, id == guess) ? guess : whichWord_.code(coder, id);
+    if (id >= words_.size()) throw Error("inputs are damaged: an unknown word");
+    if (id == kNewWord) {
+      if (!codeNewWord(coder, raw, pattern)) {
+        if (Coder::kReads) text += raw;
+        continue;
+      }
+      id = static_cast<std::uint32_t>(words_.size() - 1);
+    }
+    client.about(before).next = id;
+    if (id == kTextEnd) return;
+    Word& word = words_[id];
+    std::vector<Slot>& slots = client.about(id).slots;
+    slots.resize(word.numbers.size());
+    for (std::size_t i = 0; i < slots.size(); ++i) {
+      Slot& s = slots[i];
+      const std::int64_t given = Coder::kReads ? 0 : pattern->numbers[i];
+      s.change = word.numbers[i].code(coder, difference(given, s.value), bitsOf(s.change), signsOf(s.value, s.change));
+      s.value = sum(s.value, s.change);
+    }
+    if (Coder::kReads) text += filled(word.pattern, slots);
+    if (text.size() > kMostBytes) throw Error("inputs are damaged: a text is too long");
+    before = id;
+  }
+}
+
+void InputBatch::add(const Input& input) {
+  entries_.push_back({input.kind, input.key, input.number, input.place.size(), input.text.size()});
+  texts_.append(input.place).append(input.text);
+}
+
+std::vector<OwnInput> InputBatch::inputs() const {
+  std::vector<OwnInput> out;
+  std::size_t at = 0;
+  for (const Entry& e : entries_) {
+    out.push_back({e.kind, texts_.substr(at, e.place), e.key, e.number, texts_.substr(at + e.place, e.text)});
+    at += e.place + e.text;
+  }
   return out;
 }
 
-void readInputs(std::string_view piece, std::vector<OwnInput>& out) {
+InputWriter::InputWriter() = default;
+InputWriter::~InputWriter() = default;
+
+void InputWriter::restart() { model_ = nullptr; }
+
+std::string InputWriter::write(std::vector<OwnInput> inputs) {
+  std::string out;
+  if (inputs.empty()) return out;
+  out += model_ ? kGoesOn : kBegins;
+  if (!model_) model_ = std::make_unique<InputModel>();
+  RangeWriter coder(out);
+  for (OwnInput& in : inputs) model_->code(coder, true, in);
+  OwnInput none;
+  model_->code(coder, false, none);
+  coder.finish();
+  return out;
+}
+
+InputReader::InputReader() = default;
+InputReader::~InputReader() = default;
+
+void InputReader::read(std::string_view piece, std::vector<OwnInput>& out) {
   if (piece.empty()) return;
-  const std::uint64_t size = takeNumber(piece);
-  if (size > piece.size()) throw Error("inputs are damaged: they are longer than what is left");
-  std::string_view bytes = piece.substr(0, size);
-  Decimals numbers(piece.substr(size));
-  std::int64_t lastTime = 0;
-  while (!bytes.empty()) {
-    OwnInput in;
-    const auto first = static_cast<unsigned char>(bytes.front());
-    const unsigned kind = first & ~unsigned{kPlain};
-    if (kind > static_cast<unsigned>(Input::Kind::decision)) throw Error("inputs are damaged: an unknown kind");
-    bytes.remove_prefix(1);
-    in.kind = static_cast<Input::Kind>(kind);
-    in.number = unfolded(takeNumber(bytes));
-    if (in.kind == Input::Kind::time) {
-      const auto fits = [](std::int64_t t) { return t <= kMostTime && t >= -kMostTime; };
-      if (!fits(in.number) || !fits(lastTime + in.number)) throw Error("inputs are damaged: a time is out of range");
-      in.number = lastTime += in.number;
-    }
-    if (isLong(in.kind)) {
-      in.place = takeText(bytes);
-      in.key = takeNumber(bytes);
-      in.text = takeText(bytes);
-      if ((first & kPlain) == 0) in.text = filled(in.text, numbers);
-    }
+  if (piece.front() == kBegins) model_ = std::make_unique<InputModel>();
+  if (!model_ || (piece.front() != kBegins && piece.front() != kGoesOn))
+    throw Error("inputs are damaged: expected a piece that needs none before");
+  RangeReader coder(piece.substr(1));
+  std::unique_ptr<InputModel> model = std::move(model_);  // lost if the piece is damaged
+  std::size_t bytes = 0;
+  for (OwnInput in; model->code(coder, true, in); in = {}) {
+    bytes += sizeof in + in.place.size() + in.text.size();
+    if (bytes > kMostBytes) throw Error("inputs are damaged: they are too many");
     out.push_back(std::move(in));
   }
+  coder.finish();
+  model_ = std::move(model);
 }
 
 }  // namespace spark::recorder

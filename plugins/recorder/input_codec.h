@@ -3,6 +3,7 @@
 /// The inputs of a cycle as bytes, and back.
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -12,7 +13,7 @@
 namespace spark::recorder {
 
 /// Names of channels in a recording, with their encodings.
-inline constexpr std::string_view kInputs = "/spark/inputs", kInputsEncoding = "spark-inputs-2";
+inline constexpr std::string_view kInputs = "/spark/inputs", kInputsEncoding = "spark-inputs-3";
 inline constexpr std::string_view kStates = "/spark/states", kStatesEncoding = "spark-state-2";
 inline constexpr std::string_view kHashes = "/spark/hashes";
 
@@ -26,31 +27,63 @@ struct OwnInput {
   bool operator==(const OwnInput&) const = default;
 };
 
-/// Writes inputs as bytes. A piece:
-///
-///     varint size, inputs     each: u8 kind, varint number, and if it has them: place, varint key, text
-///     u8 bytes of numbers     the lowest byte of each, then the second one of each, ...: four in all
-///
-/// Numbers of inputs are folded (2 n, or -2 n - 1), times are differences to the last one of the piece. Most of what
-/// agents send is decimal numbers in texts that are otherwise the same in each cycle. So a text stands without them:
-/// the byte k, 1 to 6, is a number with k decimals; the number is that of its digits, doubled, plus one if it is
-/// negative. A kind with 0x80 has a text that stands as it is.
-class InputWriter {
+/// Inputs as they came. The simulation's thread only copies them; they are encoded by the one that writes.
+class InputBatch {
  public:
   void add(const Input& input);
-  /// The bytes so far, a piece that can be read without others. They are forgotten.
-  std::string take();
+  bool empty() const { return entries_.empty(); }
+  /// Memory that it takes.
+  std::size_t bytes() const { return entries_.size() * sizeof(Entry) + texts_.size(); }
+  std::vector<OwnInput> inputs() const;
 
  private:
-  void text(std::string_view v);
-  bool split(std::string_view text);
-  std::string bytes_;
-  std::vector<std::uint32_t> decimals_;  ///< numbers of the texts
-  std::string template_;                 ///< a text without its numbers
-  std::int64_t lastTime_ = 0;
+  struct Entry {
+    Input::Kind kind;
+    std::uint64_t key;
+    std::int64_t number;
+    std::size_t place, text;  ///< lengths, in texts_
+  };
+  std::vector<Entry> entries_;
+  std::string texts_;
 };
 
-/// Appends the inputs of a piece. Throws Error if it is damaged.
-void readInputs(std::string_view piece, std::vector<OwnInput>& out);
+struct InputModel;
+
+/// Writes inputs as pieces, each of which needs those before, back to the last restart. A piece is a byte, 1 if it
+/// needs none, and bits of a range coder (range_coder.h), whose chances come from the inputs before:
+///
+///     inputs     kind, number (a difference to the last one of the kind), and if it has them: client, text
+///     client     place and key: the one that followed the last one before, another one that is known, or a new one
+///     text       its words, each of them beginning with a parenthesis: the one that followed the last one in the texts
+///                of this client, another one that is known, or a new one; and the end
+///     word       its characters without numbers, once; each time its numbers, as differences to what the client sent
+///                last in their place
+///
+/// A number of a text is a decimal one that is written back with the same characters, not behind a letter or a digit.
+/// What is known is limited, so that no client takes memory with it.
+class InputWriter {
+ public:
+  InputWriter();
+  ~InputWriter();
+  /// The next piece needs none before.
+  void restart();
+  /// The inputs as a piece; "" if there are none.
+  std::string write(std::vector<OwnInput> inputs);
+
+ private:
+  std::unique_ptr<InputModel> model_;  ///< nullptr: the next piece needs none before
+};
+
+/// Reads the pieces of an InputWriter, from one on that needs none before.
+class InputReader {
+ public:
+  InputReader();
+  ~InputReader();
+  /// Appends the inputs of a piece. Throws Error if it is damaged, or if pieces before it are missing.
+  void read(std::string_view piece, std::vector<OwnInput>& out);
+
+ private:
+  std::unique_ptr<InputModel> model_;  ///< nullptr: no piece was read yet, or a damaged one
+};
 
 }  // namespace spark::recorder

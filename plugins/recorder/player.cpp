@@ -171,7 +171,7 @@ bool InputPlayer::readChunk() {
     if (m.time <= after_ && m.channel != states) return true;
     if (m.channel == inputs) {
       std::vector<OwnInput> read;
-      recorder::readInputs(m.data, read);
+      inputReader_.read(m.data, read);
       inputs_.insert(inputs_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
     } else if (m.channel == hashes) {
       const auto j = nlohmann::json::parse(m.data, nullptr, false);

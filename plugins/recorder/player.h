@@ -63,10 +63,11 @@ class InputPlayer : public Node, public IInputTape {
   std::vector<std::string> lacks() const;
 
   std::unique_ptr<mcap::Reader> reader_;
-  std::size_t chunk_ = 0;                       ///< next one to read
-  mcap::Time after_ = -1;                       ///< messages up to then belong to what was skipped
-  bool hole_ = false;                           ///< what follows inputs_ is damaged
-  std::vector<std::string> holes_;              ///< what was left out, a sentence each
+  std::size_t chunk_ = 0;           ///< next one to read
+  mcap::Time after_ = -1;           ///< messages up to then belong to what was skipped
+  bool hole_ = false;               ///< what follows inputs_ is damaged
+  std::vector<std::string> holes_;  ///< what was left out, a sentence each
+  recorder::InputReader inputReader_;
   std::deque<recorder::OwnInput> inputs_;       ///< read and not yet passed
   std::map<std::int64_t, std::string> hashes_;  ///< by cycle: read and not yet compared
   std::map<mcap::Time, std::string> frames_;    ///< states, likewise

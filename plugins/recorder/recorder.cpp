@@ -57,7 +57,8 @@ void Recorder::record(std::string file, const std::vector<std::string>& argument
   if (!snapshots_) kernel().create("Snapshots", ISnapshots::kPath);
   recording_ = std::make_unique<recorder::Recording>(file, "Spark");
   file_ = std::move(file);
-  inputs_.take();
+  inputs_ = {};
+  inputWriter_ = std::make_shared<recorder::InputWriter>();
   attached_.clear();
   failed_ = false;
   inputChannel_ = recording_->channel({0, std::string(recorder::kInputs), std::string(recorder::kInputsEncoding)});
@@ -97,7 +98,7 @@ void Recorder::finish() {
   kernel().log().removeSink(logSink_);
   // What came after the last cycle, and the end: a state with that.
   mcap::Time end = lastTime_;
-  if (std::string rest = inputs_.take(); !rest.empty()) recording_->message(inputChannel_, ++end, std::move(rest));
+  if (!inputs_.empty()) writeInputs(++end);
   if (!kernel().isEnding() && simulation_ && (end > lastTime_ || simulation_->cycle() != stateCycle_)) keyFrame(end);
   if (match_) match_->finish(end);
   match_.reset();
@@ -129,7 +130,7 @@ void Recorder::endCycle(const Event& event) {
   const double end = simulation_ ? simulation_->time() : event.time;
   lastTime_ = recorder::nanoseconds(end);
   attachNewTexts(lastTime_);
-  recording_->message(inputChannel_, lastTime_, inputs_.take());
+  writeInputs(lastTime_);
   if (event.cycle % hashEvery_ == 0)
     recording_->message(hashChannel_, lastTime_,
                         fmt::format("{{\"cycle\":{},\"state\":\"{:016x}\"}}", event.cycle, stateHash(kernel().root())));
@@ -145,7 +146,18 @@ void Recorder::endCycle(const Event& event) {
   }
 }
 
+void Recorder::writeInputs(mcap::Time time) {
+  const auto batch = std::make_shared<recorder::InputBatch>(std::exchange(inputs_, {}));
+  recording_->later(batch->bytes(), [writer = inputWriter_, batch, time, channel = inputChannel_,
+                                     restarts = std::exchange(inputsRestart_, false)](const auto& put) {
+    if (restarts) writer->restart();
+    put(channel, time, writer->write(batch->inputs()));
+  });
+}
+
+/// A simulation may begin here, without the inputs before.
 void Recorder::keyFrame(mcap::Time time) {
+  inputsRestart_ = true;
   const auto state = std::make_shared<Snapshot>();
   state->state.reserve(stateBytes_);
   snapshots_->take(*state);

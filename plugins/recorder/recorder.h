@@ -45,13 +45,16 @@ class Recorder : public Node, public IInputTape {
  private:
   void beforePublish(const Event&) { structure_ = kernel().structureVersion(); }
   void endCycle(const Event& event);
+  void writeInputs(mcap::Time time);
   void keyFrame(mcap::Time time);
   void attachNewTexts(mcap::Time time);
   void drawFrame(mcap::Time time);
   void note(Level level, std::string_view line);
 
   std::unique_ptr<recorder::Recording> recording_;
-  recorder::InputWriter inputs_;
+  recorder::InputBatch inputs_;                         ///< since the last cycle
+  std::shared_ptr<recorder::InputWriter> inputWriter_;  ///< thread of the recording
+  bool inputsRestart_ = false;
   std::uint16_t inputChannel_ = 0, stateChannel_ = 0, hashChannel_ = 0, logChannel_ = 0, shapeChannel_ = 0,
                 placeChannel_ = 0;
   int logSink_ = 0;

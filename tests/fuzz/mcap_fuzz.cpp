@@ -17,11 +17,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (ftruncate(file, 0) != 0 || pwrite(file, data, size, 0) != static_cast<ssize_t>(size)) std::abort();
   try {
     spark::mcap::Reader reader(name);
+    spark::recorder::InputReader inputs;
     for (const auto& chunk : reader.chunks())
       reader.forEach(chunk, [&](const spark::mcap::Message& m) {
         std::vector<spark::recorder::OwnInput> out;
         try {
-          spark::recorder::readInputs(m.data, out);
+          inputs.read(m.data, out);
         } catch (const spark::Error&) {
         }
         try {

@@ -236,13 +236,15 @@ TEST_CASE("One changed byte of an input is found: the cycle, and by the next sta
     for (const auto& [number, channel] : from.channels()) to.channel(channel);
     to.metadata("spark", from.metadataOf("spark"));
     for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
+    recorder::InputReader reader;
+    recorder::InputWriter writer;
     for (const auto& chunk : from.chunks())
       from.forEach(chunk, [&](const mcap::Message& m) {
         std::string data(m.data);
-        if (m.channel == from.channelOf(recorder::kInputs) && m.time > 6'000'000'000 && changedAt == 0) {
+        if (m.channel == from.channelOf(recorder::kInputs)) {
           std::vector<recorder::OwnInput> inputs;
-          recorder::readInputs(m.data, inputs);
-          for (auto i = inputs.begin(); i != inputs.end() && changedAt == 0; ++i) {
+          reader.read(m.data, inputs);
+          for (auto i = inputs.begin(); i != inputs.end() && m.time > 6'000'000'000 && changedAt == 0; ++i) {
             const std::size_t drive = i->kind == Input::Kind::message ? i->text.find("(drive ") : std::string::npos;
             if (drive == std::string::npos) continue;
             char& digit = i->text[i->text.find_first_of("123456789", drive)];
@@ -250,9 +252,8 @@ TEST_CASE("One changed byte of an input is found: the cycle, and by the next sta
             changedAt =
                 std::find_if(i, inputs.end(), [](const auto& in) { return in.kind == Input::Kind::cycle; })->number;
           }
-          recorder::InputWriter writer;
-          for (const auto& i : inputs) writer.add({i.kind, i.place, i.key, i.number, i.text});
-          data = writer.take();
+          writer.restart();
+          data = writer.write(inputs);
         }
         to.message(m.channel, m.time, data);
         return true;
