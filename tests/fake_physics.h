@@ -49,7 +49,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   engine::JointType jointType() const override { return type; }
   IRigidBody* body(int index) const override { return bodies[index]; }
   int axes() const override { return count; }
-  Vec3 anchor() const override { return Vec3::Zero(); }
+  Vec3 anchor() const override { return point; }
   Vec3 axisNow(int) const override { return Vec3::UnitZ(); }
   void setWorldAnchor(const Vec3&) override {}
   void setWorldAxis(int, const Vec3&) override {}
@@ -87,6 +87,7 @@ class FakeJoint : public SceneNode, public IJoint, public IMotor {
   std::array<double, 3> angles{}, rates{}, maxSpeeds{};
   std::array<engine::Control, 3> controls{};
   std::map<std::pair<engine::JointParameter, int>, double> parameters;
+  Vec3 point = Vec3::Zero();
   double torque = 0;
   bool measures = false;
   struct {

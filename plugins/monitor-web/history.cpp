@@ -34,13 +34,13 @@ void History::takeScene(std::uint32_t shape, std::string_view message) {
   used_ += scene->size();
 }
 
-void History::take(const Snapshot& snapshot, std::uint32_t shape, std::span<const std::uint32_t> toggled) {
+void History::take(const Snapshot& snapshot, std::uint32_t shape, const FrameScene& scene) {
   if (snapshot.time < builder_.newest()) clear();
   builder_.addEvents(snapshot);
   if (!snapshot.events.empty()) growing_.reset();
   if (snapshot.time < due() || !scenes_.contains(shape)) return;
   growing_.reset();
-  if (std::optional<Piece> piece = builder_.addFrame(snapshot, shape, toggled)) keep(std::move(*piece));
+  if (std::optional<Piece> piece = builder_.addFrame(snapshot, shape, scene)) keep(std::move(*piece));
 }
 
 void History::keep(Piece piece) {

@@ -28,8 +28,8 @@ class History {
   /// Starts a scene; its frames follow. `message`: as sceneMessage() writes it.
   void takeScene(std::uint32_t shape, std::string_view message);
   /// Takes the events of a snapshot and, if it is due, its frame. A time before that of the last frame clears the
-  /// history: the simulation was set back. `toggled`: as Instant::toggled.
-  void take(const Snapshot& snapshot, std::uint32_t shape, std::span<const std::uint32_t> toggled);
+  /// history: the simulation was set back. `scene`: that of the shape.
+  void take(const Snapshot& snapshot, std::uint32_t shape, const FrameScene& scene);
 
   bool empty() const { return !builder_.growing(); }
   /// Simulated time of the first and the last frame [s]; 0 if there are none.

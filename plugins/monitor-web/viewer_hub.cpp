@@ -259,8 +259,8 @@ bool ViewerHub::takeSnapshot(Snapshot& snapshot, Clock::time_point now) {
   if (snapshot.scene) takeScene(snapshot, now);
   sendEnvironment(snapshot, now);
   if (snapshot.shape != shape_) return false;
-  toggles_.update(snapshot.visible);
-  if (keepsHistory()) history_->take(snapshot, shapeNumber_, toggles_.nodes());
+  frameScene_.update(snapshot.visible);
+  if (keepsHistory()) history_->take(snapshot, shapeNumber_, frameScene_);
   return true;
 }
 
@@ -269,8 +269,8 @@ void ViewerHub::takeScene(Snapshot& snapshot, Clock::time_point now) {
   scene_ = std::make_shared<const std::string>(sceneMessage(snapshot, ++shapeNumber_, assets_.links()));
   sceneAt_ = now;
   if (keepsHistory()) history_->takeScene(shapeNumber_, *scene_);
+  frameScene_.begin(snapshot);
   snapshot.scene.reset();
-  toggles_.begin(snapshot.visible);
 }
 
 void ViewerHub::sendEnvironment(const Snapshot& snapshot, Clock::time_point now) {
@@ -291,7 +291,7 @@ void ViewerHub::sendLane(std::size_t index, const Snapshot& snapshot, Clock::tim
   Lane& lane = lanes_[index];
   const Clock::duration period = periodOf(lane.rate);
   lane.due = std::max(lane.due + period, now + period / 2);
-  lane.encoder.advance({shapeNumber_, snapshot.time, snapshot.transforms, snapshot.visible, toggles_.nodes()});
+  lane.encoder.advance(frameScene_.instant(snapshot, shapeNumber_));
   lane.key.reset();
   lane.delta.reset();
   for (const auto& [id, viewer] : viewers_)

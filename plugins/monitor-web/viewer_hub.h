@@ -127,7 +127,7 @@ class ViewerHub {
   std::uint64_t shape_ = 0;                   ///< MonitorFrame::shape of `scene_`
   std::uint32_t shapeNumber_ = 0;             ///< the same in messages: counts from 1
   Clock::time_point sceneAt_{};               ///< when `scene_` was made
-  Toggles toggles_;                           ///< nodes whose visibility has changed since `scene_` was made
+  FrameScene frameScene_;                     ///< the same for frames
   ChangeTracker environment_;
   Clock::time_point alwaysDue_{};  ///< when entries with policy `always` are sent again
 

@@ -29,16 +29,16 @@ void MatchWriter::take(const web::Snapshot& snapshot, mcap::Time time, const Rec
     shape_ = snapshot.shape;
     ++number_;
     put(channels_.scenes, time, web::sceneHead(number_, web::Packing::none) + web::sceneMessage(snapshot, number_));
-    toggles_.begin(snapshot.visible);
+    scene_.begin(snapshot);
   }
-  toggles_.update(snapshot.visible);
+  scene_.update(snapshot.visible);
   std::size_t i = 0;
   for (const Element event : snapshot.events)
     put(channels_.events, time, web::eventMessage(snapshot.eventTimes[i++], event));
   if (const std::string changed = changes_.update(snapshot, false); !changed.empty())
     put(channels_.events, time, changed);
   builder_.addEvents(snapshot);
-  if (const auto piece = builder_.addFrame(snapshot, number_, toggles_.nodes())) write(*piece, time, put);
+  if (const auto piece = builder_.addFrame(snapshot, number_, scene_)) write(*piece, time, put);
 }
 
 void MatchWriter::write(const web::Piece& piece, mcap::Time time, const Recording::Put& put) {

@@ -21,7 +21,7 @@ namespace spark::recorder {
 
 inline constexpr std::string_view kPieces = "/monitor", kScenes = "/monitor/scenes", kOutline = "/monitor/outline",
                                   kEvents = "/events";
-inline constexpr std::string_view kMatchEncoding = "spark-monitor-1";
+inline constexpr std::string_view kMatchEncoding = "spark-monitor-2";
 
 /// Writes scenes and pieces. Thread of the recording.
 class MatchWriter {
@@ -41,7 +41,7 @@ class MatchWriter {
   void write(const web::Piece& piece, mcap::Time time, const Recording::Put& put);
   const Channels channels_;
   web::PieceBuilder builder_;
-  web::Toggles toggles_;
+  web::FrameScene scene_;
   web::ChangeTracker changes_;  ///< of the environment, for the channel of events
   std::uint64_t shape_ = 0;     ///< Snapshot::shape of the last scene
   std::uint32_t number_ = 0;    ///< its number, from 1

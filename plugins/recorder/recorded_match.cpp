@@ -73,6 +73,19 @@ std::string colors(const Json& node) {
   return out;
 }
 
+/// Of a transform that has `before` others before it. Throws Error where it is damaged.
+web::Mount mountOf(const Json& node, std::size_t before) {
+  web::Mount out;
+  out.on = node.value("on", -1);
+  if (out.on < 0) return {};
+  const auto pin = node.value("pin", std::vector<float>());
+  if (static_cast<std::size_t>(out.on) >= before || pin.size() != 3)
+    throw Error("its scene is damaged: expected a transform before, and a point");
+  out.pin = Vec3f(pin[0], pin[1], pin[2]);
+  if (!out.pin.allFinite()) throw Error("its scene is damaged: a point is not finite");
+  return out;
+}
+
 /// Of a mesh, behind its visibility.
 std::string look(const Json& node, bool single) {
   std::string out;
@@ -231,7 +244,7 @@ RecordedMatch::Scene RecordedMatch::readScene(std::string_view text) {
       n.head = n.isTransform ? "(nd TRF" : kind == "light" ? "(nd Light" : single ? "(nd SMN" : "(nd StaticMesh";
       if (kind == "light") n.rest = colors(node);
       if (n.hasVisibility) n.rest = look(node, single);
-      out.transforms += n.isTransform;
+      if (n.isTransform) out.mounts.push_back(mountOf(node, out.mounts.size()));
       out.visible.push_back(node.value("visible", true));
       out.nodes.push_back(std::move(n));
     }
@@ -278,7 +291,7 @@ void RecordedMatch::openPiece(std::uint32_t piece) {
     parts_.emplace_back(isFrame, bytes);
   });
   const Scene& scene = sceneOf(pieces_.at(piece).scene);
-  decoder_.begin(scene.transforms, scene.visible);
+  decoder_.begin(scene.mounts, scene.visible);
 }
 
 /// Decodes the next frame of the piece, with the texts before it.

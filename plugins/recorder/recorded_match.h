@@ -56,7 +56,7 @@ class RecordedMatch : public Node, public IGameLog {
   };
   struct Scene {
     std::vector<SceneNode> nodes;
-    std::size_t transforms = 0;
+    std::vector<web::Mount> mounts;  ///< of its transforms
     std::vector<std::uint8_t> visible;
   };
 

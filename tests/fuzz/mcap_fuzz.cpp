@@ -27,7 +27,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
         try {
           spark::web::FrameDecoder decoder;
-          decoder.begin(8, std::vector<std::uint8_t>(8));
+          std::vector<spark::web::Mount> mounts(8);
+          mounts[5].on = 2, mounts[6].on = 5;
+          decoder.begin(mounts, std::vector<std::uint8_t>(8));
           spark::web::PieceMessage::read(m.data).forEach([&](bool isFrame, std::string_view bytes) {
             if (isFrame) decoder.take(bytes);
           });

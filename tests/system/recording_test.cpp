@@ -123,7 +123,8 @@ TEST_CASE("A recording shows browsers the poses of the simulation") {
   // Where the ball is, in /tf and in the pieces, by milliseconds.
   std::map<std::int64_t, double> expected, found;
   struct Scene {
-    std::size_t transforms = 0, ball = 0;
+    std::vector<web::Mount> mounts;
+    std::size_t ball = 0;
   };
   std::map<std::uint32_t, Scene> scenes;
   for (const auto& chunk : reader.chunks())
@@ -139,14 +140,14 @@ TEST_CASE("A recording shows browsers the poses of the simulation") {
         const Json described = Json::parse(message.texts.at(0));
         for (const Json& node : described["nodes"]) {
           if (node["kind"] != "transform") continue;
-          if (node["path"] == "/usr/scene/Ball") scene.ball = scene.transforms;
-          ++scene.transforms;
+          if (node["path"] == "/usr/scene/Ball") scene.ball = scene.mounts.size();
+          scene.mounts.emplace_back();
         }
       }
       if (m.channel != reader.channelOf("/monitor")) return true;
       const web::test::ReadPiece piece(m.data);
       const Scene& scene = scenes.at(piece.shape);
-      web::test::FrameReader frames(scene.transforms);
+      web::test::FrameReader frames(scene.mounts.size());
       for (const std::string& frame : piece.frames) {
         frames.take(frame);
         found[std::llround(frames.time * 1000)] =

@@ -40,8 +40,10 @@ std::int64_t ByteReader::signedVarint() {
   return static_cast<std::int64_t>(v >> 1) ^ -static_cast<std::int64_t>(v & 1);
 }
 
-void FrameDecoder::begin(std::size_t transforms, std::vector<std::uint8_t> visible) {
-  now_.assign(transforms, {});
+void FrameDecoder::begin(std::vector<Mount> mounts, std::vector<std::uint8_t> visible) {
+  mounts_ = std::move(mounts);
+  now_.assign(mounts_.size(), {});
+  places_.assign(mounts_.size(), Matrix::Identity());
   visible_ = visibleAtKey_ = std::move(visible);
   hasKey_ = false;
 }
@@ -88,17 +90,31 @@ void FrameDecoder::take(std::string_view frame) {
     check(node < visible_.size(), "nodes of the scene");
     visible_[node] = in.number<std::uint8_t>() != 0;
   }
+  place();
 }
 
-Matrix FrameDecoder::transform(std::size_t i) const {
-  const Quantised& v = now_.at(i);
-  const float metres = std::ldexp(1.f, -positionBits_);
-  Eigen::Quaternionf q(static_cast<float>(v[6]), static_cast<float>(v[3]), static_cast<float>(v[4]),
-                       static_cast<float>(v[5]));
-  Matrix out = Matrix::Identity();
-  if (q.squaredNorm() > 0) out.block<3, 3>(0, 0) = q.normalized().toRotationMatrix();
-  for (int k = 0; k < 3; ++k) out(k, 3) = static_cast<float>(v[static_cast<std::size_t>(k)]) * metres;
-  return out;
+void FrameDecoder::place() {
+  const float metres = std::ldexp(1.f, -positionBits_), units = std::ldexp(1.f, -rotationBits_);
+  for (std::size_t i = 0; i < now_.size(); ++i) {
+    const Quantised& v = now_[i];
+    const auto number = [&v](std::size_t k) { return static_cast<float>(v[k]); };
+    Vec3f position = Vec3f(number(0), number(1), number(2)) * metres;
+    Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
+    if (const Mount& mount = mounts_[i]; mount.on >= 0) {
+      const Matrix& other = places_[static_cast<std::size_t>(mount.on)];
+      const Vec3f half = Vec3f(number(3), number(4), number(5)) * (units / 4);  // tan(angle / 4)
+      const float s = half.squaredNorm();
+      Eigen::Quaternionf q;
+      q.w() = (1 - s) / (1 + s);
+      q.vec() = half * (2 / (1 + s));
+      rotation = other.block<3, 3>(0, 0) * q.toRotationMatrix();
+      position = positionOf(other) + other.block<3, 3>(0, 0) * position - rotation * mount.pin;
+    } else if (const Eigen::Quaternionf q(number(6), number(3), number(4), number(5)); q.squaredNorm() > 0) {
+      rotation = q.normalized().toRotationMatrix();
+    }
+    places_[i].block<3, 3>(0, 0) = rotation;
+    places_[i].block<3, 1>(0, 3) = position;
+  }
 }
 
 PieceMessage PieceMessage::read(std::string_view message) {

@@ -2,13 +2,13 @@
 /// \file
 /// Decodes the binary frames of the stream, and the pieces of recordings.
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <string_view>
 #include <vector>
 
 #include "api/math.h"
+#include "stream_encoder.h"
 
 namespace spark::web {
 
@@ -36,23 +36,24 @@ class ByteReader {
 /// The scene that a stream of frames shows.
 class FrameDecoder {
  public:
-  /// Begins with a scene. `transforms`: how many it has; `visible`: of each node.
-  void begin(std::size_t transforms, std::vector<std::uint8_t> visible);
+  /// Begins with a scene. `mounts`: of its transforms, as Instant::mounts; `visible`: of each node.
+  void begin(std::vector<Mount> mounts, std::vector<std::uint8_t> visible);
   /// Takes a frame. Throws Error if it is malformed, or if it belongs to another scene or to another frame before.
   void take(std::string_view frame);
   /// Time of the last frame [s].
   double time() const { return time_; }
   /// Local matrix of transform i, counted in node order.
-  Matrix transform(std::size_t i) const;
+  const Matrix& transform(std::size_t i) const { return places_.at(i); }
   /// Visibility of each node.
   const std::vector<std::uint8_t>& visible() const { return visible_; }
   /// Time of a frame [s], without the rest. Throws Error if it is none.
   static double timeOf(std::string_view frame);
 
  private:
-  /// Position x y z and quaternion x y z w, in quanta.
-  using Quantised = std::array<std::int32_t, 7>;
+  void place();
+  std::vector<Mount> mounts_;
   std::vector<Quantised> now_;
+  std::vector<Matrix> places_;
   std::vector<std::uint8_t> visible_, visibleAtKey_;
   int positionBits_ = 0, rotationBits_ = 0;
   std::uint32_t serial_ = 0;

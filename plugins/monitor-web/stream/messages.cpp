@@ -21,8 +21,9 @@ void writeShape(JsonWriter& json, const SceneShape& shape) {
   json.key("rotation").numbers(shape.rotation).endObject();
 }
 
-void writeTransform(JsonWriter& json, const NodeDescription& node) {
+void writeTransform(JsonWriter& json, const NodeDescription& node, const Mount& mount) {
   json.member("kind", "transform");
+  if (mount.on >= 0) json.member("on", mount.on).key("pin").numbers(mount.pin);
   if (!node.path.empty()) json.member("path", node.path);
   if (node.shapes.empty()) return;
   json.key("shapes").beginArray();
@@ -53,11 +54,12 @@ void writeMesh(JsonWriter& json, const NodeDescription& node, bool visible, cons
   json.member("visible", visible);
 }
 
-void writeNode(JsonWriter& json, const NodeDescription& node, bool visible, const AssetLink& link) {
+/// `mount`: of a transform.
+void writeNode(JsonWriter& json, const NodeDescription& node, bool visible, const Mount& mount, const AssetLink& link) {
   json.beginObject().member("parent", node.parent);
   switch (node.kind) {
     case FrameNode::Kind::transform:
-      writeTransform(json, node);
+      writeTransform(json, node, mount);
       break;
     case FrameNode::Kind::light:
       json.member("kind", "light").key("colors").beginArray();
@@ -127,7 +129,7 @@ void writeElement(JsonWriter& json, const Element& element) {
 std::string helloMessage(double step, double rate, double history) {
   std::string out;
   JsonWriter json(out, kWebJson);
-  json.beginObject().member("type", "hello").member("protocol", 1).member("spark", SPARK_VERSION);
+  json.beginObject().member("type", "hello").member("protocol", 2).member("spark", SPARK_VERSION);
   json.member("step", step).member("rate", rate).member("history", history).endObject();
   return out;
 }
@@ -147,7 +149,12 @@ std::string sceneMessage(const Snapshot& s, std::uint32_t shape, const AssetLink
   JsonWriter json(out, kWebJson);
   json.beginObject().member("type", "scene").member("shape", shape).key("nodes").beginArray();
   const auto& nodes = s.scene->nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) writeNode(json, nodes[i], s.visible[i], link);
+  const auto& mounts = s.scene->mounts;
+  std::size_t transform = 0;
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const bool mounted = nodes[i].kind == FrameNode::Kind::transform && transform < mounts.size();
+    writeNode(json, nodes[i], s.visible[i], mounted ? mounts[transform++] : Mount{}, link);
+  }
   json.endArray().key("materials").beginArray();
   for (const MaterialDescription& m : s.scene->materials) {
     json.beginObject().member("name", m.name);

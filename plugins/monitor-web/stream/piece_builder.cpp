@@ -57,9 +57,8 @@ void PieceBuilder::addEvents(const Snapshot& snapshot) {
   }
 }
 
-std::optional<Piece> PieceBuilder::addFrame(const Snapshot& snapshot, std::uint32_t shape,
-                                            std::span<const std::uint32_t> toggled) {
-  encoder_.advance({shape, snapshot.time, snapshot.transforms, snapshot.visible, toggled});
+std::optional<Piece> PieceBuilder::addFrame(const Snapshot& snapshot, std::uint32_t shape, const FrameScene& scene) {
+  encoder_.advance(scene.instant(snapshot, shape));
   const std::string entries = environment_.update(snapshot, true), changes = changes_.update(snapshot, false);
   if (!growing_) {
     begin(snapshot, shape);
@@ -84,14 +83,16 @@ void PieceBuilder::begin(const Snapshot& snapshot, std::uint32_t shape) {
   addRecord(growing_->content, Record::frame, encoder_.key());
 }
 
-void Toggles::begin(const std::vector<std::uint8_t>& visible) {
-  visible_ = visible;
-  nodes_.clear();
+void FrameScene::begin(const Snapshot& snapshot) {
+  visible_ = snapshot.visible;
+  toggled_.clear();
+  mounts_ = snapshot.scene->mounts;
 }
 
-void Toggles::update(const std::vector<std::uint8_t>& visible) {
+void FrameScene::update(const std::vector<std::uint8_t>& visible) {
   for (std::uint32_t i = 0; i < visible_.size(); ++i)
-    if (visible_[i] != visible[i] && std::find(nodes_.begin(), nodes_.end(), i) == nodes_.end()) nodes_.push_back(i);
+    if (visible_[i] != visible[i] && std::find(toggled_.begin(), toggled_.end(), i) == toggled_.end())
+      toggled_.push_back(i);
 }
 
 }  // namespace spark::web

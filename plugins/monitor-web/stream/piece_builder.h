@@ -9,7 +9,6 @@
 /// the pieces of the last minutes for viewers, the recorder writes all of them. README.md specifies the bytes.
 
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -17,6 +16,23 @@
 #include "stream_encoder.h"
 
 namespace spark::web {
+
+/// What frames of a scene need to know of it.
+class FrameScene {
+ public:
+  /// Begins a scene, which has a description.
+  void begin(const Snapshot& snapshot);
+  void update(const std::vector<std::uint8_t>& visible);
+  /// The snapshot as input of an encoder. `shape`: number of the scene.
+  Instant instant(const Snapshot& snapshot, std::uint32_t shape) const {
+    return {shape, snapshot.time, snapshot.transforms, snapshot.visible, toggled_, mounts_};
+  }
+
+ private:
+  std::vector<std::uint8_t> visible_;   ///< at the beginning
+  std::vector<std::uint32_t> toggled_;  ///< nodes whose visibility has ever changed, in the order of their first change
+  std::vector<Mount> mounts_;
+};
 
 /// Some seconds of a match.
 struct Piece {
@@ -54,8 +70,8 @@ class PieceBuilder {
   /// Takes the events of a snapshot. Those before the first frame are lost.
   void addEvents(const Snapshot& snapshot);
   /// Takes the frame of a snapshot, whose time must not be before newest(). Returns the piece that it completed.
-  /// `shape`: number of its scene; `toggled`: as Instant::toggled.
-  std::optional<Piece> addFrame(const Snapshot& snapshot, std::uint32_t shape, std::span<const std::uint32_t> toggled);
+  /// `shape`: number of its scene.
+  std::optional<Piece> addFrame(const Snapshot& snapshot, std::uint32_t shape, const FrameScene& scene);
   /// Forgets the piece that grows.
   void clear() { growing_.reset(); }
 
@@ -65,20 +81,6 @@ class PieceBuilder {
   StreamEncoder encoder_{kFine};
   ChangeTracker environment_, changes_;  ///< with and without `always` entries
   std::optional<Piece> growing_;
-};
-
-/// The nodes of a scene whose visibility has ever changed.
-class Toggles {
- public:
-  /// Begins a scene. `visible`: as in Snapshot.
-  void begin(const std::vector<std::uint8_t>& visible);
-  void update(const std::vector<std::uint8_t>& visible);
-  /// Indices of the nodes, in the order of their first change.
-  const std::vector<std::uint32_t>& nodes() const { return nodes_; }
-
- private:
-  std::vector<std::uint8_t> visible_;  ///< at the beginning
-  std::vector<std::uint32_t> nodes_;
 };
 
 }  // namespace spark::web

@@ -1,6 +1,8 @@
 #include "scene_capture.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <map>
 #include <set>
 
 #include "api/physics.h"
@@ -78,6 +80,39 @@ std::vector<MaterialDescription> describeMaterials(const MonitorFrame& frame) {
   return out;
 }
 
+/// A length in whole tenths of a millimetre, so that one scene has one text.
+float rounded(double metres) { return static_cast<float>(std::round(metres * 1e4) / 1e4); }
+
+/// Mounts the later of two transforms on the earlier one if a joint links them.
+std::vector<Mount> mountsOf(const MonitorFrame& frame, const SceneDescription& scene) {
+  struct Place {
+    std::size_t transform;
+    int parent;
+  };
+  std::map<const Transform*, Place> places;
+  for (std::size_t i = 0; i < frame.nodes.size(); ++i)
+    if (const Transform* t = frame.nodes[i].transform) places.insert({t, {places.size(), scene.nodes[i].parent}});
+  std::vector<Mount> out(places.size());
+  std::vector<IJoint*> joints;
+  if (!places.empty() && places.begin()->first->isLinked()) places.begin()->first->kernel().root().collect(joints);
+  for (const IJoint* joint : joints) {
+    const engine::JointType type = joint->jointType();
+    const IRigidBody* const bodies[] = {joint->body(0), joint->body(1)};
+    if (!bodies[0] || !bodies[1] || type == engine::JointType::angularMotor) continue;
+    const auto a = places.find(bodies[0]->bodyTransform()), b = places.find(bodies[1]->bodyTransform());
+    if (a == places.end() || b == places.end() || a == b || a->second.parent != b->second.parent) continue;
+    const auto& [later, place] = *(a->second.transform > b->second.transform ? a : b);
+    Mount& mount = out[place.transform];
+    if (mount.on >= 0) continue;
+    mount.on = static_cast<int>(std::min(a->second.transform, b->second.transform));
+    if (type == engine::JointType::slider || type == engine::JointType::fixed) continue;  // they hold no point
+    const Matrix& world = later->world();
+    const Vec3f pin = world.block<3, 3>(0, 0).transpose() * (joint->anchor().cast<float>() - positionOf(world));
+    if (pin.allFinite()) mount.pin = Vec3f(rounded(pin.x()), rounded(pin.y()), rounded(pin.z()));
+  }
+  return out;
+}
+
 }  // namespace
 
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame) {
@@ -91,6 +126,7 @@ std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame)
     lastAtDepth[depth] = static_cast<int>(scene->nodes.size()) - 1;
   }
   scene->materials = describeMaterials(frame);
+  scene->mounts = mountsOf(frame, *scene);
   return scene;
 }
 

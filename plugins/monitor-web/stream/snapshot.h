@@ -8,6 +8,7 @@
 
 #include "api/appearance.h"
 #include "api/monitor.h"
+#include "stream_encoder.h"
 
 namespace spark::web {
 
@@ -43,6 +44,7 @@ struct MaterialDescription {
 struct SceneDescription {
   std::vector<NodeDescription> nodes;
   std::vector<MaterialDescription> materials;  ///< those that the host has, in alphabetical order
+  std::vector<Mount> mounts;                   ///< of each transform, in order
 };
 
 /// One instant. It is reused: its buffers keep their capacity.

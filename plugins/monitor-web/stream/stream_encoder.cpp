@@ -25,12 +25,11 @@ std::int32_t quantum(float exact, std::int32_t before) {
   return static_cast<std::int32_t>(std::lround(std::clamp(exact, -kMaxQuantised, kMaxQuantised)));
 }
 
-/// The rotation of a matrix as quaternion x y z w. Tolerates scaled and sheared matrices; the identity if there is
-/// none.
-Eigen::Vector4f rotationOf(const Matrix& m) {
+/// The rotation of a matrix. Tolerates scaled and sheared matrices; the identity if there is none.
+Eigen::Quaternionf rotationOf(const Matrix& m) {
   const Eigen::Matrix3f r = m.block<3, 3>(0, 0);
-  const Eigen::Vector4f q = Eigen::Quaternionf(r).normalized().coeffs();
-  return q.allFinite() && q.squaredNorm() > 0.5f ? q : Eigen::Vector4f(0, 0, 0, 1);
+  const Eigen::Quaternionf q = Eigen::Quaternionf(r).normalized();
+  return q.coeffs().allFinite() && q.squaredNorm() > 0.5f ? q : Eigen::Quaternionf::Identity();
 }
 }  // namespace
 
@@ -43,15 +42,28 @@ void putSigned(std::string& out, std::int64_t value) {
   putVarint(out, static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63));
 }
 
-StreamEncoder::Quantised StreamEncoder::quantise(const Matrix& m, const Quantised& before) const {
+Quantised StreamEncoder::quantise(const Instant& instant, std::size_t i, const Quantised& before) const {
   const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
-  Quantised out;
-  for (int i = 0; i < 3; ++i) out[i] = quantum(m(i, 3) * perMetre, before[i]);
-  const Eigen::Vector4f q = rotationOf(m) * perUnit;
-  const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
-                             static_cast<float>(before[5]), static_cast<float>(before[6]));
-  const float sign = q.dot(last) < 0 ? -1.f : 1.f;  // q and -q are the same rotation: take the nearer one
-  for (int i = 0; i < 4; ++i) out[3 + i] = quantum(sign * q[i], before[3 + i]);
+  const Matrix& m = instant.transforms[i];
+  const Mount mount = instant.mounts.empty() ? Mount{} : instant.mounts[i];
+  Vec3f position = positionOf(m);
+  Eigen::Quaternionf q = rotationOf(m);
+  Quantised out{};
+  if (mount.on >= 0) {
+    const Matrix& other = instant.transforms[static_cast<std::size_t>(mount.on)];
+    const Eigen::Quaternionf back = rotationOf(other).conjugate();
+    position = back * (position + q * mount.pin - positionOf(other));
+    q = back * q;
+    const Vec3f turn = q.vec() * (4 * perUnit / (1 + std::abs(q.w())));
+    for (std::size_t k = 0; k < 3; ++k) out[3 + k] = quantum(q.w() < 0 ? -turn[k] : turn[k], before[3 + k]);
+  } else {
+    const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
+                               static_cast<float>(before[5]), static_cast<float>(before[6]));
+    // q and -q are the same rotation: take the nearer one.
+    const Eigen::Vector4f turn = q.coeffs() * (q.coeffs().dot(last) < 0 ? -perUnit : perUnit);
+    for (std::size_t k = 0; k < 4; ++k) out[3 + k] = quantum(turn[k], before[3 + k]);
+  }
+  for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(position[k] * perMetre, before[k]);
   return out;
 }
 
@@ -65,7 +77,7 @@ void StreamEncoder::advance(const Instant& instant) {
   }
   std::swap(before_, now_);
   now_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) now_[i] = quantise(instant.transforms[i], before_[i]);
+  for (std::size_t i = 0; i < size; ++i) now_[i] = quantise(instant, i, before_[i]);
   toggled_.assign(instant.toggled.begin(), instant.toggled.end());
   toggledNow_.clear();
   for (const std::uint32_t node : toggled_)

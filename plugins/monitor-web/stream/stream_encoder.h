@@ -23,6 +23,13 @@ struct Precision {
 inline constexpr Precision kFine{10, 10};  ///< 1 mm, about 0.1 degrees
 inline constexpr Precision kCoarse{7, 7};  ///< 8 mm, about 0.9 degrees
 
+/// Where frames place a transform: relative to another one, if a joint links the two. A robot's limb then changes by
+/// the turn of its joint only, not with the whole robot.
+struct Mount {
+  int on = -1;                ///< number of the other transform, which is before it and has the same parent; -1: none
+  Vec3f pin = Vec3f::Zero();  ///< the point that the joint holds, in the frame of the transform itself [m]
+};
+
 /// Input of the encoder: the scene at one instant. The arrays belong to the caller.
 struct Instant {
   std::uint32_t shape = 0;                 ///< number of the scene that it belongs to
@@ -30,7 +37,12 @@ struct Instant {
   std::span<const Matrix> transforms;      ///< local matrices of the transform nodes, in order
   std::span<const std::uint8_t> visible;   ///< of all nodes, in order
   std::span<const std::uint32_t> toggled;  ///< nodes whose visibility ever changed in this shape; only grows
+  std::span<const Mount> mounts;           ///< of each transform, the same ones in a shape; empty: there are none
 };
+
+/// A transform in quanta: position x y z and quaternion x y z w. With a mount: the place of the pin in the frame of the
+/// other transform, the axis of the rotation from there times 4 tan(angle / 4), and 0.
+using Quantised = std::array<std::int32_t, 7>;
 
 /// A stream of frames at one precision. A delta is relative to the previous frame; a viewer that missed that one needs
 /// a key frame.
@@ -52,9 +64,7 @@ class StreamEncoder {
   std::uint32_t shape() const { return shape_; }
 
  private:
-  /// Position x y z and quaternion x y z w, in quanta.
-  using Quantised = std::array<std::int32_t, 7>;
-  Quantised quantise(const Matrix& m, const Quantised& before) const;
+  Quantised quantise(const Instant& instant, std::size_t i, const Quantised& before) const;
   void begin(std::string& out, MessageKind kind) const;
   void writeTransforms(std::string& out, const std::vector<Quantised>& before) const;
   void writeVisibility(std::string& out, const std::vector<std::uint32_t>& nodes) const;

@@ -2,6 +2,7 @@
 /// \file
 /// Decodes the binary frames like a viewer; written from the description in README.md.
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <cstring>
 #include <map>
@@ -15,7 +16,7 @@ namespace spark::web::test {
 /// The transforms that a viewer has received. Throws std::runtime_error for a malformed frame.
 class FrameReader {
  public:
-  explicit FrameReader(std::size_t transforms) : quantised(transforms) {}
+  explicit FrameReader(std::size_t transforms) : quantised(transforms), mounts(transforms) {}
 
   void take(std::string_view frame) {
     bytes_ = frame;
@@ -40,24 +41,39 @@ class FrameReader {
     must(bytes_.empty(), "the end");
   }
 
-  /// True if transform `i` equals the matrix to within a quantum.
-  bool isNear(std::size_t i, const Matrix& m) const {
+  /// Where transform `i` is.
+  Pose poseOf(std::size_t i) const {
     const auto& q = quantised[i];
+    const Mount& mount = mounts[i];
     const double perMetre = std::ldexp(1, positionBits), perUnit = std::ldexp(1, rotationBits);
-    const double x = q[3] / perUnit, y = q[4] / perUnit, z = q[5] / perUnit, w = q[6] / perUnit;
-    const double s = 2 / (x * x + y * y + z * z + w * w);
-    const double r[3][3] = {{1 - s * (y * y + z * z), s * (x * y - w * z), s * (x * z + w * y)},
-                            {s * (x * y + w * z), 1 - s * (x * x + z * z), s * (y * z - w * x)},
-                            {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}};
+    const Vec3 place = Vec3(double(q[0]), double(q[1]), double(q[2])) / perMetre;
+    const Vec3 turn = Vec3(double(q[3]), double(q[4]), double(q[5])) / perUnit;
+    if (mount.on < 0) {
+      const Eigen::Quaterniond rotation(double(q[6]) / perUnit, turn.x(), turn.y(), turn.z());
+      return {place, rotation.normalized().toRotationMatrix()};
+    }
+    const Pose other = poseOf(static_cast<std::size_t>(mount.on));
+    const double angle = 4 * std::atan(turn.norm() / 4);
+    const Vec3 axis = turn.norm() > 0 ? turn.normalized() : Vec3::UnitX();
+    Pose out;
+    out.rotation = other.rotation * Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    out.position = other.position + other.rotation * place - out.rotation * mount.pin.cast<double>();
+    return out;
+  }
+  /// True if transform `i` equals the matrix to within a quantum; on another one, to within `quanta`.
+  bool isNear(std::size_t i, const Matrix& m, double quanta = 1) const {
+    const Pose pose = poseOf(i);
     for (int row = 0; row < 3; ++row) {
-      if (std::abs(q[row] / perMetre - m(row, 3)) > 1 / perMetre) return false;
+      if (!(std::abs(pose.position[row] - m(row, 3)) <= quanta * std::ldexp(1, -positionBits))) return false;
       for (int column = 0; column < 3; ++column)
-        if (std::abs(r[row][column] - m(row, column)) > 4 / perUnit) return false;
+        if (!(std::abs(pose.rotation(row, column) - m(row, column)) <= 4 * quanta * std::ldexp(1, -rotationBits)))
+          return false;
     }
     return true;
   }
 
   std::vector<std::array<std::int64_t, 7>> quantised;
+  std::vector<Mount> mounts;              ///< as the scene has them
   std::map<std::uint64_t, bool> visible;  ///< by node, from the last key frame and the deltas since
   std::uint32_t shape = 0, serial = 0;
   int positionBits = 0, rotationBits = 0;

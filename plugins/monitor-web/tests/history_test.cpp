@@ -19,6 +19,8 @@ struct Match {
   explicit Match(double seconds = 300, std::size_t bytes = 64u << 20) : history(seconds, bytes) { newScene(1); }
   void newScene(std::uint32_t number) {
     shape = number;
+    s.scene = std::make_shared<SceneDescription>();
+    scene.begin(s);
     history.takeScene(shape, "{\"type\":\"scene\",\"shape\":" + std::to_string(shape) + "}");
   }
   /// A cycle later.
@@ -39,7 +41,7 @@ struct Match {
     s.eventTimes.clear();
     if (foul > 0) s.events.open("foul").add(std::exchange(foul, 0)).close(), s.eventTimes.push_back(s.time);
     if (loud) s.events.open("sound").add("bump").add(1).close(), s.eventTimes.push_back(s.time);
-    history.take(s, shape, {});
+    history.take(s, shape, scene);
   }
   void play(double seconds) {
     for (int i = 0; i < std::lround(seconds / 0.02); ++i) cycle();
@@ -60,6 +62,7 @@ struct Match {
 
   History history;
   Snapshot s;
+  FrameScene scene;
   std::uint32_t shape = 0;
   std::minstd_rand random{7};
   bool restless = false;

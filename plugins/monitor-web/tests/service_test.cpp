@@ -152,7 +152,7 @@ TEST_CASE("Viewers see the scene move and send requests, and a referee changes t
   WebClient viewer(server.port), referee(server.port);
   REQUIRE(viewer.watch() == 101);
   REQUIRE(referee.watch() == 101);
-  CHECK(jsonWith(viewer, "\"hello\"")["protocol"] == 1);
+  CHECK(jsonWith(viewer, "\"hello\"")["protocol"] == 2);
   Json scene = jsonWith(viewer, "\"scene\"");
   REQUIRE(scene["nodes"].size() == 3);
   CHECK(scene["nodes"][0]["path"] == "/usr/scene/robot");

@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cstring>
 
+#include "../stream/frame_decoder.h"
 #include "frame_reader.h"
 
 using namespace spark;
@@ -21,7 +22,8 @@ struct Scene {
   std::vector<std::uint32_t> toggled;
   std::uint32_t shape = 1;
   double time = 0;
-  Instant instant() const { return {shape, time, transforms, visible, toggled}; }
+  std::vector<Mount> mounts{};
+  Instant instant() const { return {shape, time, transforms, visible, toggled, mounts}; }
 };
 }  // namespace
 
@@ -84,6 +86,60 @@ TEST_CASE("A rotation keeps its quaternion's sign from frame to frame, so a cont
     scene.transforms[0] = at(0, 0, 0, 0, 0, static_cast<float>(degrees));
     encoder.advance(scene.instant());
     CHECK(encoder.delta().size() <= 20 + 2 + 1 + 2 * 2 + 3);
+  }
+}
+
+TEST_CASE("A limb that moves with its robot costs nothing, and one that turns at its joint a number") {
+  Scene scene{std::vector<Matrix>(4, Matrix::Identity()), std::vector<std::uint8_t>(4, 1), {}};
+  const Vec3f pin(0, 0, 0.1f);
+  for (int i = 0; i < 4; ++i) scene.mounts.push_back({i - 1, pin});
+  const auto pose = [&](const Matrix& torso, float joint) {
+    scene.transforms[0] = torso;
+    for (int i = 1; i < 4; ++i)  // each 20 cm below the one before
+      scene.transforms[i] = scene.transforms[i - 1] * at(0, 0, -0.1f) * at(0, 0, 0, joint) * at(0, 0, -0.1f);
+  };
+  StreamEncoder encoder(kFine);
+  pose(Matrix::Identity(), 0);
+  encoder.advance(scene.instant());
+  FrameReader follower(4);
+  follower.mounts = scene.mounts;
+  follower.take(encoder.key());
+  std::size_t most = 0;
+  for (int k = 1; k < 200; ++k) {
+    const auto t = static_cast<float>(k);
+    pose(at(0.05f * t, -10, 1, t, 7 * t, 0.3f * t), k < 100 ? 0 : t - 100);
+    encoder.advance(scene.instant());
+    follower.take(encoder.delta());
+    for (std::size_t i = 0; i < 4; ++i) REQUIRE(follower.isNear(i, scene.transforms[i], 2));
+    if (k < 100) REQUIRE(encoder.delta().size() <= 20 + 2 + 1 + 2 + 7 * 2);
+    most = std::max(most, encoder.delta().size());
+  }
+  CHECK(most <= 20 + 2 + 1 + 2 + 7 * 2 + 3 * 2);
+  FrameReader newcomer(4);
+  newcomer.mounts = scene.mounts;
+  newcomer.take(encoder.key());
+  CHECK(newcomer.quantised == follower.quantised);
+}
+
+TEST_CASE("Mounted transforms are decoded as a viewer decodes them, also half a turn from each other") {
+  Scene scene{std::vector<Matrix>(3, Matrix::Identity()), std::vector<std::uint8_t>(3, 1), {}};
+  scene.mounts = {{}, {0, {0.2f, -0.1f, 0.3f}}, {1, {0, 0, 0}}};
+  StreamEncoder encoder(kFine);
+  FrameReader reader(3);
+  reader.mounts = scene.mounts;
+  FrameDecoder decoder;
+  decoder.begin(scene.mounts, {1, 1, 1});
+  for (int k = 0; k < 400; ++k) {
+    const auto t = static_cast<float>(k);
+    scene.transforms = {at(3, 2, 0.5f, t), at(3, 2.2f, 0.5f, -2 * t, 90, t), at(2.9f, 2, 0.4f, 0, 3 * t)};
+    encoder.advance(scene.instant());
+    const std::string& frame = k % 50 == 0 ? encoder.key() : encoder.delta();
+    reader.take(frame);
+    decoder.take(frame);
+    for (std::size_t i = 0; i < 3; ++i) {
+      REQUIRE(reader.isNear(i, scene.transforms[i], 4));
+      REQUIRE(reader.isNear(i, decoder.transform(i), 0.1));
+    }
   }
 }
 

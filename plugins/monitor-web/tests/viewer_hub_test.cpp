@@ -131,7 +131,7 @@ TEST_CASE("A viewer gets hello, scene, environment, a key frame, then deltas") {
   auto viewer = t.enter();
   REQUIRE(t.frame());
   viewer->takeAll();
-  CHECK_THAT(viewer->said, Catch::StartsWith("{\"type\":\"hello\",\"protocol\":1,"));
+  CHECK_THAT(viewer->said, Catch::StartsWith("{\"type\":\"hello\",\"protocol\":2,"));
   CHECK(viewer->said.find("\"type\":\"scene\"") < viewer->said.find("\"full\":true"));
   CHECK_THAT(viewer->said, Contains("[\"FieldLength\",30]") && Contains("\"load\":\"StdUnitBox\""));
   FrameReader reader(2);

@@ -19,6 +19,10 @@ export interface SceneNode {
   kind: "transform" | "light" | "mesh";
   /// Path in the host's tree; missing in logs.
   path?: string;
+  /// Transforms: frames place this one relative to that transform, which is counted among transforms and before it;
+  /// `pin` is the point that both share, in the frame of this one [m]. Missing if there is none.
+  on?: number;
+  pin?: [number, number, number];
   /// Transforms: the colliders; missing in logs and if there are none.
   shapes?: Shape[];
   /// Lights: diffuse, ambient and specular colour.

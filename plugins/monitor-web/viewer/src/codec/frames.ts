@@ -5,7 +5,11 @@
 ///   endian; then runs: varint skip, varint count (0 ends), count times: u8 mask (x y z of the position, x y z w of the
 ///   rotation), for each set bit a zigzag varint. A value is a whole number of quanta of 2^-bits. At the end varint n,
 ///   n times: varint node, u8 visible.
+///
+/// A transform that is on another one has, in place of its position, that of its pin in the frame of the other one; and
+/// in place of x y z of its rotation, the axis of the rotation from there times 4 tan(angle / 4).
 
+import type { SceneNode } from "../model";
 import type { Poses } from "../sources/poses";
 
 const kKey = 1, kDelta = 2, kHeader = 20;
@@ -21,12 +25,33 @@ export type Decoded =
   /// The bytes are not a valid frame. The poses are invalid until the next key frame.
   | "broken";
 
+const held = new Float64Array(3), arm = new Float64Array(3);
+
+/// Writes the product of the quaternion at `a` and (x, y, z, w).
+function multiply(from: Float32Array, a: number, x: number, y: number, z: number, w: number, to: Float32Array, at: number): void {
+  const ax = from[a]!, ay = from[a + 1]!, az = from[a + 2]!, aw = from[a + 3]!;
+  to[at] = aw * x + ax * w + ay * z - az * y;
+  to[at + 1] = aw * y - ax * z + ay * w + az * x;
+  to[at + 2] = aw * z + ax * y - ay * x + az * w;
+  to[at + 3] = aw * w - ax * x - ay * y - az * z;
+}
+
+/// Writes the vector (x, y, z), turned by the quaternion at `a`.
+function rotate(from: Float32Array, a: number, x: number, y: number, z: number, to: Float64Array): void {
+  const ax = from[a]!, ay = from[a + 1]!, az = from[a + 2]!, aw = from[a + 3]!;
+  const tx = 2 * (ay * z - az * y), ty = 2 * (az * x - ax * z), tz = 2 * (ax * y - ay * x);
+  to[0] = x + aw * tx + ay * tz - az * ty;
+  to[1] = y + aw * ty + az * tx - ax * tz;
+  to[2] = z + aw * tz + ax * ty - ay * tx;
+}
+
 export class FrameDecoder {
   /// Time of the last decoded frame [s].
   time = 0;
 
   private steps = new Int32Array(0);
   private transforms: Int32Array = new Int32Array(0);
+  private nodes: SceneNode[] = [];
   private shape = -1;
   private serial = -1;
   /// Precision of the current quanta, in bits.
@@ -36,8 +61,9 @@ export class FrameDecoder {
   private good = true;
 
   /// Prepares for frames of this shape. `transforms` are the indices of its transforms, ascending.
-  setScene(shape: number, transforms: Int32Array): void {
+  setScene(shape: number, { nodes, transforms }: { nodes: SceneNode[]; transforms: Int32Array }): void {
     this.shape = shape;
+    this.nodes = nodes;
     this.transforms = transforms;
     this.steps = new Int32Array(kPerTransform * transforms.length);
     this.serial = -1;
@@ -108,7 +134,11 @@ export class FrameDecoder {
   private place(poses: Poses, metres: number, units: number): void {
     const { steps, transforms } = this, { position, rotation } = poses;
     for (let k = 0, s = 0; k < transforms.length; ++k, s += kPerTransform) {
-      const i = transforms[k]!;
+      const i = transforms[k]!, node = this.nodes[i]!;
+      if (node.on !== undefined) {
+        this.placeOn(poses, i, transforms[node.on]!, node.pin!, s, metres, units);
+        continue;
+      }
       position[3 * i] = steps[s]! * metres;
       position[3 * i + 1] = steps[s + 1]! * metres;
       position[3 * i + 2] = steps[s + 2]! * metres;
@@ -120,6 +150,18 @@ export class FrameDecoder {
       rotation[4 * i + 2] = turned ? z / length : 0;
       rotation[4 * i + 3] = turned ? w / length : 1;
     }
+  }
+
+  /// Places node i on node j. `s`: where its numbers are.
+  private placeOn(poses: Poses, i: number, j: number, pin: [number, number, number], s: number, metres: number, units: number): void {
+    const { steps } = this, { position, rotation } = poses;
+    // The rotation from j to i: its vector part is the axis times sin(angle / 2).
+    const x = (steps[s + 3]! * units) / 4, y = (steps[s + 4]! * units) / 4, z = (steps[s + 5]! * units) / 4;
+    const square = x * x + y * y + z * z, scale = 2 / (1 + square), w = (1 - square) / (1 + square);
+    multiply(rotation, 4 * j, x * scale, y * scale, z * scale, w, rotation, 4 * i);
+    rotate(rotation, 4 * j, steps[s]! * metres, steps[s + 1]! * metres, steps[s + 2]! * metres, held);
+    rotate(rotation, 4 * i, pin[0], pin[1], pin[2], arm);
+    for (let k = 0; k < 3; ++k) position[3 * i + k] = position[3 * j + k]! + held[k]! - arm[k]!;
   }
 
   private byte(): number {

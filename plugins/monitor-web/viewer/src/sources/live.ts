@@ -159,7 +159,7 @@ export class Live implements LiveSource {
   private lost(): void {
     this.referee = false;
     this.status = null;
-    this.decoder.setScene(-1, this.scene.transforms);
+    this.decoder.setScene(-1, this.scene);
     this.decoder.time = 0;
     this.questions.lost();
     this.onchange?.();
@@ -238,7 +238,7 @@ export class Live implements LiveSource {
     // After a loss, the host usually sends the same scene again.
     if (!sameNodes(this.scene.nodes, read.nodes) || this.scene === kNoScene) this.scene = makeScene(read.nodes);
     this.poses = read.poses;
-    this.decoder.setScene(read.shape, this.scene.transforms);
+    this.decoder.setScene(read.shape, this.scene);
     this.ring.begin(read.poses);
     this.tape.addScene(read.shape, this.scene, read.poses);
     this.nameRobots();

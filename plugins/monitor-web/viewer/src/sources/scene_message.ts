@@ -22,10 +22,12 @@ export function readScene(message: Record<string, unknown>): SceneMessage | null
   const { shape, nodes, local, materials } = message;
   if (typeof shape !== "number" || !Array.isArray(nodes) || !Array.isArray(local) || nodes.length > kMostNodes) return null;
   const read: SceneNode[] = [];
+  let transforms = 0;
   const looks = readMaterials(materials);
   for (const node of nodes) {
     const one = readNode(node, read);
-    if (!one) return null;
+    if (!one || (one.on !== undefined && one.on >= transforms)) return null;
+    if (one.kind === "transform") ++transforms;
     if (one.materials && looks.size > 0) one.looks = one.materials.map((name) => looks.get(name) ?? looks.get("default") ?? null);
     read.push(one);
   }
@@ -50,6 +52,11 @@ function readNode(from: unknown, before: SceneNode[]): SceneNode | null {
   if (Array.isArray(from.shapes)) {
     if (!from.shapes.every(isShape)) return null;
     node.shapes = from.shapes;
+  }
+  if (node.kind === "transform" && from.on !== undefined) {
+    if (!Number.isInteger(from.on) || (from.on as number) < 0 || !isNumbers(from.pin, 3)) return null;
+    node.on = from.on as number;
+    node.pin = from.pin as [number, number, number];
   }
   const { colors } = from;
   if (node.kind === "light" && Array.isArray(colors) && colors.length === 3 && colors.every(isColour)) node.colors = colors as [Colour, Colour, Colour];

@@ -168,7 +168,7 @@ export class TapePlayer {
     if (piece !== this.piece) this.told = -1;
     this.piece = piece;
     this.at = this.ahead = -1;
-    this.decoder.setScene(piece.shape, scene.transforms);
+    this.decoder.setScene(piece.shape, scene);
     this.to.copy(poses);
   }
 

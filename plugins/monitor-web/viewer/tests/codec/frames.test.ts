@@ -1,15 +1,17 @@
 import { expect, test } from "vitest";
 import { FrameDecoder } from "../../src/codec/frames";
+import type { SceneNode } from "../../src/model";
 import { Poses } from "../../src/sources/poses";
 import { type Frame, writeFrame } from "../helpers/frame_writer";
 import { Random } from "../helpers/random";
 
 const kBits: [number, number] = [10, 10];
 
-function decoder(transforms: number[], nodes: number, shape = 1): { decoder: FrameDecoder; poses: Poses } {
+function decoder(transforms: number[], nodes: number, shape = 1): { decoder: FrameDecoder; poses: Poses; scene: SceneNode[] } {
   const made = new FrameDecoder();
-  made.setScene(shape, Int32Array.from(transforms));
-  return { decoder: made, poses: new Poses(nodes) };
+  const scene: SceneNode[] = Array.from({ length: nodes }, () => ({ parent: -1, kind: "transform" }));
+  made.setScene(shape, { nodes: scene, transforms: Int32Array.from(transforms) });
+  return { decoder: made, poses: new Poses(nodes), scene };
 }
 
 const frame = (steps: number[][], rest: Partial<Frame> = {}): Frame => ({ key: true, shape: 1, serial: 1, time: 1, bits: kBits, steps, ...rest });
@@ -58,6 +60,26 @@ test("decoded key frames and deltas equal the encoded ones", () => {
       for (const [node, shown] of visible) expect(poses.visible[node]).toBe(shown);
     }
   }
+});
+
+test("a transform that is on another one turns with it about the pin", () => {
+  const { decoder: d, poses, scene } = decoder([0, 2, 3], 4);
+  Object.assign(scene[2]!, { on: 0, pin: [0, 0, 1] });
+  Object.assign(scene[3]!, { on: 1, pin: [0, 2, 0] });
+  const half = Math.SQRT1_2 * 1024, quarter = 4 * Math.tan(Math.PI / 8) * 1024;
+  const steps = [
+    [1024, 0, 0, 0, 0, half, half], // at (1, 0, 0), turned by 90 degrees about z
+    [2048, 0, 0, quarter, 0, 0, 0], // 2 m ahead of that one, which is y, is the pin; turned by 90 degrees about its x, which is y
+    [0, 0, 1024, 0, 0, 0, 0], // its pin is 1 m above the second one, in the frame of that one
+  ];
+  expect(d.decode(writeFrame(frame(steps.map((s) => s.map(Math.round)))), poses)).toBe("shown");
+  const near = (from: Float32Array, wanted: number[]) => wanted.forEach((w, k) => expect(from[k]).toBeCloseTo(w, 2));
+  // The z axis of the second one is x now.
+  near(poses.position.subarray(6), [0, 2, 0]);
+  near(poses.rotation.subarray(8), [0.5, 0.5, 0.5, 0.5]);
+  // The third one's pin is at (1, 2, 0); its y axis is z.
+  near(poses.position.subarray(9), [1, 2, -2]);
+  near(poses.rotation.subarray(12), [0.5, 0.5, 0.5, 0.5]);
 });
 
 test("a delta without its base waits for the next key frame", () => {
