@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstring>
 
 #include "shapes.h"
 
@@ -222,31 +223,34 @@ void WorldModel::setGravityMode(BodyHandle body, bool on) {
 }
 
 namespace {
-// Position, quaternion, rotation (three rows of four, the fourth 0), velocities, accumulated force and torque; then
-// awake, gravity and the two counters of auto-disable.
-constexpr std::size_t kSaved = 3 + 4 + 12 + 3 + 3 + 3 + 3 + 4;
+// Position, quaternion, 1 if the rotation is that of the quaternion to the last bit, velocities, accumulated force and
+// torque, awake, gravity and the two counters of auto-disable; behind a 0 the rotation.
+constexpr std::size_t kSaved = 3 + 4 + 1 + 3 + 3 + 3 + 3 + 4, kSavedRotation = 9;
+
+bool sameBits(const Mat3& a, const Mat3& b) { return std::memcmp(a.data(), b.data(), sizeof(double) * 9) == 0; }
 }  // namespace
 
 void WorldModel::saveBody(BodyHandle body, std::vector<double>& out) const {
   const Index i = bodies_[body];
   const DynamicState& s = state_.bodies[i];
-  out.reserve(out.size() + kSaved);
+  const bool derived = sameBits(s.rotation, rotationOf(s.quaternion));
+  out.reserve(out.size() + kSaved + kSavedRotation);
   const auto put = [&](const double* from, int n) { out.insert(out.end(), from, from + n); };
   put(s.position.data(), 3);
   put(s.quaternion.data(), 4);
-  for (int row = 0; row < 3; ++row) {
-    const double numbers[] = {s.rotation(row, 0), s.rotation(row, 1), s.rotation(row, 2), 0};
-    put(numbers, 4);
-  }
+  out.push_back(derived);
   for (const Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) put(v->data(), 3);
   const double rest[] = {double(s.awake), double(model_.bodies[i].gravity), double(watch_.counters(i).idleStepsLeft),
                          watch_.counters(i).idleTimeLeft};
   put(rest, 4);
+  if (!derived) put(s.rotation.data(), kSavedRotation);
 }
 
 void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
-  if (in.size() != kSaved)
-    throw Error(fmt::format("expected {} numbers of a body's saved state, found {}", kSaved, in.size()));
+  constexpr std::size_t kDerived = 7;
+  const bool derived = in.size() > kDerived && in[kDerived] != 0;
+  if (const std::size_t size = derived ? kSaved : kSaved + kSavedRotation; in.size() != size)
+    throw Error(fmt::format("expected {} numbers of a body's saved state, found {}", size, in.size()));
   const Index i = bodies_[body];
   DynamicState& s = state_.bodies[i];
   const double* p = in.data();
@@ -256,11 +260,7 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   };
   take(s.position.data(), 3);
   take(s.quaternion.data(), 4);
-  for (int row = 0; row < 3; ++row) {
-    double numbers[4];
-    take(numbers, 4);
-    s.rotation.row(row) = Vec3(numbers[0], numbers[1], numbers[2]);
-  }
+  ++p;
   for (Vec3* v : {&s.linearVelocity, &s.angularVelocity, &s.force, &s.torque}) take(v->data(), 3);
   ++s.version;
   state_.loaded.resize(state_.bodies.size(), 0);
@@ -269,6 +269,8 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
   watch_.setCounters(i, {static_cast<int>(p[0]), p[1]});
+  s.rotation = rotationOf(s.quaternion);
+  if (!derived) std::copy_n(p + 2, kSavedRotation, s.rotation.data());
   watch_.placed(i);
   state_.markMoved(i);
 }

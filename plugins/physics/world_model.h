@@ -83,7 +83,8 @@ class WorldModel {
   void setLinkOrigin(BodyHandle body, const Vec3& origin);
   /// False: gravity does not act on the body.
   void setGravityMode(BodyHandle body, bool on);
-  /// Appends the body's state, the counters of sleep included: a fixed number of values.
+  /// Appends the body's state, the counters of sleep included. The rotation is left out where it is that of the
+  /// quaternion, as engines compute it.
   void saveBody(BodyHandle body, std::vector<double>& out) const;
   /// Restores what saveBody() wrote, bit for bit. Throws Error for another number of values.
   void loadBody(BodyHandle body, std::span<const double> in);

@@ -11,7 +11,7 @@
 
 namespace spark::recorder {
 
-/// The schemas of logMessage(), Frames::shapes() and Frames::places(): names, types, and the fields at the top.
+/// The schemas of logMessage(), Frames::shapes() and Places::message(): names, types, and the fields at the top.
 mcap::Schema logSchema();
 mcap::Schema shapesSchema();
 mcap::Schema placesSchema();

@@ -13,14 +13,26 @@ namespace spark::recorder {
 namespace {
 constexpr int kDigits = 3;  // decimals of lengths [m] and quaternions
 
+/// Writes a number; no zero has a sign.
+void writeNumber(JsonWriter& json, const char* key, double v) {
+  json.key(key).fixed(std::abs(v) < 0.5e-3 ? 0.0 : v, kDigits);
+}
+
 void writeVector(JsonWriter& json, const char* key, double x, double y, double z) {
   json.key(key).beginObject();
-  json.key("x").fixed(x, kDigits).key("y").fixed(y, kDigits).key("z").fixed(z, kDigits).endObject();
+  writeNumber(json, "x", x);
+  writeNumber(json, "y", y);
+  writeNumber(json, "z", z);
+  json.endObject();
 }
 
 void writeRotation(JsonWriter& json, const char* key, const Eigen::Quaterniond& q) {
-  json.key(key).beginObject().key("x").fixed(q.x(), kDigits).key("y").fixed(q.y(), kDigits);
-  json.key("z").fixed(q.z(), kDigits).key("w").fixed(q.w(), kDigits).endObject();
+  json.key(key).beginObject();
+  writeNumber(json, "x", q.x());
+  writeNumber(json, "y", q.y());
+  writeNumber(json, "z", q.z());
+  writeNumber(json, "w", q.w());
+  json.endObject();
 }
 
 /// The colliders directly below a transform: not those below another one.
@@ -94,23 +106,23 @@ bool Frames::refresh() {
   if (!tree_.changed(kernel_.root()) && modified == modified_) return false;
   modified_ = modified;
   transforms_.clear();
-  if (const Node* scene = server ? server->activeScene() : nullptr) collect(*scene);
-  paths_.clear();
-  for (const Transform* t : transforms_) paths_.push_back(t->path());
-  return true;
-}
-
-void Frames::collect(const Node& parent) {
-  for (const auto& child : parent.children()) {
-    Node* const node = child->asNode();
-    if (!node) continue;
-    if (const auto transform = child->as<Transform>()) {
-      std::vector<const ICollider*> colliders;
-      collectColliders(*node, colliders);
-      if (!colliders.empty()) transforms_.push_back(transform.object);
-    }
-    collect(*node);
+  std::vector<const Transform*> all;
+  if (const Node* scene = server ? server->activeScene() : nullptr) scene->collect(all);
+  // A limb is relative to the nearest part before it that has a shape: what it moves by then hardly changes.
+  const std::vector<web::Mount> mounts = web::mountsOf(all);
+  auto frames = std::make_shared<std::vector<Places::Frame>>();
+  std::vector<int> numbers(all.size(), -1);  // of those with shapes; of others that of the one that they are on
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (mounts[i].on >= 0) numbers[i] = numbers[static_cast<std::size_t>(mounts[i].on)];
+    std::vector<const ICollider*> colliders;
+    collectColliders(*all[i], colliders);
+    if (colliders.empty()) continue;
+    frames->push_back({all[i]->path(), numbers[i]});
+    numbers[i] = static_cast<int>(transforms_.size());
+    transforms_.push_back(all[i]);
   }
+  frames_ = std::move(frames);
+  return true;
 }
 
 std::string Frames::shapes(mcap::Time time) const {
@@ -126,7 +138,8 @@ std::string Frames::shapes(mcap::Time time) const {
     const Color color = colorOf(kernel_, *transforms_[i]);
     json.beginObject();
     writeTime(json, "timestamp", time);
-    json.member("frame_id", paths_[i]).member("id", paths_[i]);
+    const std::string& path = (*frames_)[i].path;
+    json.member("frame_id", path).member("id", path);
     writeTime(json, "lifetime", 0);
     json.member("frame_locked", true);
     for (const char* none : {"metadata", "arrows", "lines", "texts", "models"}) json.key(none).beginArray().endArray();
@@ -146,15 +159,24 @@ std::string Frames::shapes(mcap::Time time) const {
   return out;
 }
 
-std::string Frames::places(mcap::Time time) const {
+Places Frames::places() const {
+  Places out{frames_, {}};
+  out.worlds.reserve(transforms_.size());
+  for (const Transform* t : transforms_) out.worlds.push_back(t->world());
+  return out;
+}
+
+std::string Places::message(mcap::Time time) const {
   std::string out;
   JsonWriter json(out);
   json.beginObject().key("transforms").beginArray();
-  for (std::size_t i = 0; i < transforms_.size(); ++i) {
-    const Matrix& m = transforms_[i]->world();
+  for (std::size_t i = 0; i < worlds.size(); ++i) {
+    const auto& [path, parent] = (*frames)[i];
+    const auto above = static_cast<std::size_t>(parent);
+    const Matrix m = parent < 0 ? worlds[i] : Matrix(worlds[above].inverse() * worlds[i]);
     json.beginObject();
     writeTime(json, "timestamp", time);
-    json.member("parent_frame_id", "world").member("child_frame_id", paths_[i]);
+    json.member("parent_frame_id", parent < 0 ? "world" : (*frames)[above].path).member("child_frame_id", path);
     writeVector(json, "translation", m(0, 3), m(1, 3), m(2, 3));
     const Eigen::Matrix3f rotation = m.block<3, 3>(0, 0);
     writeRotation(json, "rotation", Eigen::Quaterniond(Eigen::Quaternionf(rotation).cast<double>()));

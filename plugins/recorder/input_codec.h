@@ -14,7 +14,7 @@ namespace spark::recorder {
 
 /// Names of channels in a recording, with their encodings.
 inline constexpr std::string_view kInputs = "/spark/inputs", kInputsEncoding = "spark-inputs-3";
-inline constexpr std::string_view kStates = "/spark/states", kStatesEncoding = "spark-state-2";
+inline constexpr std::string_view kStates = "/spark/states", kStatesEncoding = "spark-state-3";
 inline constexpr std::string_view kHashes = "/spark/hashes";
 
 /// An input that owns its texts.

@@ -172,7 +172,10 @@ void Recorder::drawFrame(mcap::Time time) {
   if (!frames_ || static_cast<double>(time) * 1e-9 < nextPicture_ - 1e-9) return;
   nextPicture_ += picture_;
   if (frames_->refresh()) recording_->message(shapeChannel_, time, frames_->shapes(time));
-  recording_->message(placeChannel_, time, frames_->places(time));
+  const auto places = std::make_shared<const recorder::Places>(frames_->places());
+  recording_->later(places->worlds.size() * sizeof(Matrix), [places, time, channel = placeChannel_](const auto& put) {
+    put(channel, time, places->message(time));
+  });
 }
 
 /// Files may be read later as well, such as a robot's when an agent joins.

@@ -62,9 +62,9 @@ class Recorder : public Node, public IInputTape {
   std::string file_;
   std::unique_ptr<recorder::Frames> frames_;
   std::unique_ptr<recorder::MatchChannels> match_;
-  std::uint64_t structure_ = 0;        ///< version of the tree before the frame of the monitor server was made
-  double every_ = 10, picture_ = 0.5;  ///< s between key frames, and between places of shapes
-  double framesPerSecond_ = 12.5;      ///< of the match as browsers show it
+  std::uint64_t structure_ = 0;      ///< version of the tree before the frame of the monitor server was made
+  double every_ = 10, picture_ = 1;  ///< s between key frames, and between places of shapes
+  double framesPerSecond_ = 12.5;    ///< of the match as browsers show it
   int hashEvery_ = 10;
   double nextPicture_ = 0;
   double nextKeyFrame_ = 0;

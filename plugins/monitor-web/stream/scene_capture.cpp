@@ -83,28 +83,26 @@ std::vector<MaterialDescription> describeMaterials(const MonitorFrame& frame) {
 /// A length in whole tenths of a millimetre, so that one scene has one text.
 float rounded(double metres) { return static_cast<float>(std::round(metres * 1e4) / 1e4); }
 
-/// Mounts the later of two transforms on the earlier one if a joint links them.
-std::vector<Mount> mountsOf(const MonitorFrame& frame, const SceneDescription& scene) {
-  struct Place {
-    std::size_t transform;
-    int parent;
-  };
-  std::map<const Transform*, Place> places;
-  for (std::size_t i = 0; i < frame.nodes.size(); ++i)
-    if (const Transform* t = frame.nodes[i].transform) places.insert({t, {places.size(), scene.nodes[i].parent}});
-  std::vector<Mount> out(places.size());
+}  // namespace
+
+std::vector<Mount> mountsOf(const std::vector<const Transform*>& transforms) {
+  std::map<const Transform*, std::size_t> numbers;
+  for (std::size_t i = 0; i < transforms.size(); ++i)
+    if (transforms[i] && transforms[i]->isLinked()) numbers.insert({transforms[i], i});
+  std::vector<Mount> out(transforms.size());
+  if (numbers.empty()) return out;
   std::vector<IJoint*> joints;
-  if (!places.empty() && places.begin()->first->isLinked()) places.begin()->first->kernel().root().collect(joints);
+  numbers.begin()->first->kernel().root().collect(joints);
   for (const IJoint* joint : joints) {
     const engine::JointType type = joint->jointType();
     const IRigidBody* const bodies[] = {joint->body(0), joint->body(1)};
     if (!bodies[0] || !bodies[1] || type == engine::JointType::angularMotor) continue;
-    const auto a = places.find(bodies[0]->bodyTransform()), b = places.find(bodies[1]->bodyTransform());
-    if (a == places.end() || b == places.end() || a == b || a->second.parent != b->second.parent) continue;
-    const auto& [later, place] = *(a->second.transform > b->second.transform ? a : b);
-    Mount& mount = out[place.transform];
+    const auto a = numbers.find(bodies[0]->bodyTransform()), b = numbers.find(bodies[1]->bodyTransform());
+    if (a == numbers.end() || b == numbers.end() || a == b || a->first->transform() != b->first->transform()) continue;
+    const auto& [later, number] = *(a->second > b->second ? a : b);
+    Mount& mount = out[number];
     if (mount.on >= 0) continue;
-    mount.on = static_cast<int>(std::min(a->second.transform, b->second.transform));
+    mount.on = static_cast<int>(std::min(a->second, b->second));
     if (type == engine::JointType::slider || type == engine::JointType::fixed) continue;  // they hold no point
     const Matrix& world = later->world();
     const Vec3f pin = world.block<3, 3>(0, 0).transpose() * (joint->anchor().cast<float>() - positionOf(world));
@@ -113,20 +111,20 @@ std::vector<Mount> mountsOf(const MonitorFrame& frame, const SceneDescription& s
   return out;
 }
 
-}  // namespace
-
 std::shared_ptr<const SceneDescription> describeScene(const MonitorFrame& frame) {
   auto scene = std::make_shared<SceneDescription>();
+  std::vector<const Transform*> transforms;
   std::vector<int> lastAtDepth;  // index of the last node of each depth, which is the parent of the next deeper ones
   for (const FrameNode& node : frame.nodes) {
     const auto depth = static_cast<std::size_t>(node.depth);
     lastAtDepth.resize(depth + 1, -1);
+    if (node.kind == FrameNode::Kind::transform) transforms.push_back(node.transform);
     scene->nodes.push_back(describeNode(node));
     scene->nodes.back().parent = depth > 0 ? lastAtDepth[depth - 1] : -1;
     lastAtDepth[depth] = static_cast<int>(scene->nodes.size()) - 1;
   }
   scene->materials = describeMaterials(frame);
-  scene->mounts = mountsOf(frame, *scene);
+  scene->mounts = mountsOf(transforms);
   return scene;
 }
 
