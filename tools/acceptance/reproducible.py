@@ -169,7 +169,7 @@ def matches(solver):
     return "; ".join(measured for measured, _ in judged), FAIL if any(verdict == FAIL for _, verdict in judged) else PASS
 
 
-def in_middle(league, seconds=90):
+def in_middle(league, seconds=SECONDS):
     """A recorded 11 v 11 over TCP goes on from states in its middle; cost and size of the recording."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "match.mcap"
@@ -228,6 +228,6 @@ POINTS = {
     "3": ("the same, dense with exactReplay", lambda: matches("dense with exactReplay")),
     "4": ("the same, articulated", lambda: matches("articulated")),
     "5": ("recordings: simulated again to the last bit, read by others, cut off, damaged; in the browser", lambda: tests("recorder", "system-recording", "recording-mcap", "browser-rewind", "browser-recording-drop")),
-    "6": ("snapshots: 3000 cycles go on as if not interrupted; an 11 v 11 over TCP", snapshots),
+    "6": ("snapshots: 3000 cycles go on as if not interrupted; ten minutes of 11 v 11 over TCP, recorded", snapshots),
     "7": ("what a recording costs", cost),
 }
