@@ -1,5 +1,7 @@
 #include "input_codec.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -13,18 +15,40 @@ namespace {
 constexpr char kGoesOn = 0, kBegins = 1;                   // first byte of a piece
 constexpr unsigned kEnd = 8;                               // among kinds of inputs: there are no more
 constexpr std::int64_t kMostTime = std::int64_t{1} << 53;  // us
-constexpr std::size_t kMostBytes = 256u << 20;             // of the inputs of a piece
 
 constexpr int kMarks = 8;  // characters 1 to 8 stand for numbers with 0 to 7 decimals
 constexpr std::int64_t kMostDigits = std::int64_t{1} << 53;
 constexpr unsigned kClientBits = 8, kWordBits = 10;
 constexpr std::size_t kMostClients = (1u << kClientBits) - 1, kMostWords = 1u << kWordBits;
-constexpr std::size_t kMostWordLength = 200, kMostNumbers = 16, kMostNumbersInAll = 1024;
+constexpr std::size_t kMostPlaceLength = 200, kMostWordLength = 200, kMostNumbers = 16, kMostNumbersInAll = 1024;
 constexpr std::uint32_t kTextEnd = 0, kNewWord = 1, kFirstWord = 2;  // among words
 constexpr unsigned kChanges = 24;  // differences are told apart by how many bits the one before had
 
+// Bytes of the inputs of a piece: a reader takes no more, a writer begins another one after so many.
+constexpr std::size_t kMostBytes = 64u << 20, kPieceBytes = 16u << 20, kMostInput = 48u << 20;
+
+/// The memory that an input takes.
+std::size_t sizeOf(const OwnInput& in) { return sizeof in + in.place.size() + in.text.size(); }
+
 /// True if inputs of a kind have place, key and text; the others have a number only.
 bool isLong(Input::Kind kind) { return kind != Input::Kind::cycle && kind != Input::Kind::time; }
+
+void putNumber(std::string& out, std::uint64_t v) {
+  for (; v >= 0x80; v >>= 7) out += static_cast<char>(v | 0x80);
+  out += static_cast<char>(v);
+}
+
+std::uint64_t takeNumber(std::string_view& bytes) {
+  std::uint64_t out = 0;
+  for (unsigned shift = 0; shift < 64; shift += 7) {
+    if (bytes.empty()) break;
+    const auto b = static_cast<unsigned char>(bytes.front());
+    bytes.remove_prefix(1);
+    out |= static_cast<std::uint64_t>(b & 0x7f) << shift;
+    if ((b & 0x80) == 0) return out;
+  }
+  throw Error("inputs are damaged: a number has no end");
+}
 
 bool isMark(char c) { return c >= 1 && c <= kMarks; }
 bool isDigit(char c) { return c >= '0' && c <= '9'; }
@@ -132,6 +156,10 @@ unsigned signsOf(std::int64_t value, std::int64_t change) {
 /// What is known from the inputs before: the same where they are written and where they are read, and so is the
 /// description of the format; `Coder` is one of range_coder.h.
 struct InputModel {
+  /// Begins a piece.
+  void begin() { left_ = kMostBytes; }
+  /// Number of the piece since the last restart.
+  std::uint64_t piece = 0;
   /// Codes an input; false: there are no more. `in`: the input; if it is read, an empty one that gets it.
   template <class Coder>
   bool code(Coder& coder, bool more, OwnInput& in);
@@ -163,6 +191,7 @@ struct InputModel {
     }
   };
 
+  void spend(std::size_t bytes);
   template <class Coder>
   void spell(Coder& coder, std::string& text);
   template <class Coder>
@@ -188,7 +217,14 @@ struct InputModel {
   std::vector<Word> words_ = std::vector<Word>(kFirstWord);
   std::map<std::string, std::uint32_t, std::less<>> ids_;  ///< of words_, by pattern
   std::size_t numbersOfWords_ = 0;
+  std::size_t left_ = 0;  ///< bytes that the inputs of the piece may still have
 };
+
+/// So that a few bytes do not become endlessly many. Throws Error.
+void InputModel::spend(std::size_t bytes) {
+  if (bytes > left_) throw Error(fmt::format("a piece of inputs has more than {} bytes", kMostBytes));
+  left_ -= bytes;
+}
 
 template <class Coder>
 bool InputModel::code(Coder& coder, bool more, OwnInput& in) {
@@ -196,10 +232,11 @@ bool InputModel::code(Coder& coder, bool more, OwnInput& in) {
   if (kind > kEnd) throw Error("inputs are damaged: an unknown kind");
   lastKind_ = kind;
   if (kind == kEnd) return false;
+  spend(sizeof in);
   in.kind = static_cast<Input::Kind>(kind);
   std::int64_t& last = lastNumbers_[kind];
   last = in.number = sum(last, numbers_[kind].code(coder, difference(in.number, last)));
-  if (in.kind == Input::Kind::time && (in.number > kMostTime || in.number < -kMostTime))
+  if (Coder::kReads && in.kind == Input::Kind::time && (in.number > kMostTime || in.number < -kMostTime))
     throw Error("inputs are damaged: a time is out of range");
   if (isLong(in.kind)) codeText(coder, codeClient(coder, in), in.text);
   return true;
@@ -208,7 +245,8 @@ bool InputModel::code(Coder& coder, bool more, OwnInput& in) {
 template <class Coder>
 void InputModel::spell(Coder& coder, std::string& text) {
   const std::int64_t size = textLengths_.code(coder, static_cast<std::int64_t>(text.size()));
-  if (size < 0 || static_cast<std::size_t>(size) > kMostBytes) throw Error("inputs are damaged: a text is too long");
+  if (size < 0) throw Error("inputs are damaged: a text is shorter than nothing");
+  spend(static_cast<std::size_t>(size));
   for (std::size_t i = 0; i < static_cast<std::size_t>(size); ++i) {
     if (Coder::kReads) text.push_back(0);
     text[i] = static_cast<char>(characters_.code(coder, static_cast<unsigned char>(text[i])));
@@ -228,10 +266,11 @@ InputModel::Client& InputModel::codeClient(Coder& coder, OwnInput& in) {
   if (client == 0) {
     spell(coder, in.place);
     in.key = static_cast<std::uint64_t>(keys_.code(coder, static_cast<std::int64_t>(in.key)));
-    if (clients_.size() == kMostClients) return unknown_ = Client{};
+    if (clients_.size() == kMostClients || in.place.size() > kMostPlaceLength) return unknown_ = Client{};
     client = next = clients_.size();
     clients_.push_back({in.place, in.key});  // `next` is no more
   } else if (Coder::kReads) {
+    spend(clients_[client].place.size());
     in.place = clients_[client].place;
     in.key = clients_[client].key;
   }
@@ -253,10 +292,12 @@ template <class Coder>
 bool InputModel::codeNewWord(Coder& coder, std::string& raw, std::optional<Pattern>& pattern) {
   const bool keeps = coder.bit(wordKept_, pattern && hasRoomFor(pattern->numbers.size()));
   if (Coder::kReads) pattern.emplace();
-  spell(coder, keeps ? pattern->text : raw);
+  std::string& text = keeps ? pattern->text : raw;
+  spell(coder, text);
+  if (text.empty()) throw Error("inputs are damaged: a word has no characters");
   if (!keeps) return false;
   const auto numbers = static_cast<std::size_t>(std::count_if(pattern->text.begin(), pattern->text.end(), isMark));
-  if (numbers > kMostNumbers || !hasRoomFor(numbers) || idOf(pattern) != kNewWord)
+  if (text.size() > kMostWordLength || numbers > kMostNumbers || !hasRoomFor(numbers) || idOf(pattern) != kNewWord)
     throw Error("inputs are damaged: a word that is none");
   ids_[pattern->text] = static_cast<std::uint32_t>(words_.size());
   words_.push_back({pattern->text, std::vector<SlotNumber>(numbers)});
@@ -293,8 +334,11 @@ void InputModel::codeText(Coder& coder, Client& client, std::string& text) {
       s.change = word.numbers[i].code(coder, difference(given, s.value), bitsOf(s.change), signsOf(s.value, s.change));
       s.value = sum(s.value, s.change);
     }
-    if (Coder::kReads) text += filled(word.pattern, slots);
-    if (text.size() > kMostBytes) throw Error("inputs are damaged: a text is too long");
+    if (Coder::kReads) {
+      const std::string filledWord = filled(word.pattern, slots);
+      spend(filledWord.size());
+      text += filledWord;
+    }
     before = id;
   }
 }
@@ -304,8 +348,16 @@ void InputBatch::add(const Input& input) {
   texts_.append(input.place).append(input.text);
 }
 
+InputBatch InputBatch::next() const {
+  InputBatch out;
+  out.entries_.reserve(entries_.size());
+  out.texts_.reserve(texts_.size());
+  return out;
+}
+
 std::vector<OwnInput> InputBatch::inputs() const {
   std::vector<OwnInput> out;
+  out.reserve(entries_.size());
   std::size_t at = 0;
   for (const Entry& e : entries_) {
     out.push_back({e.kind, texts_.substr(at, e.place), e.key, e.number, texts_.substr(at + e.place, e.text)});
@@ -319,35 +371,46 @@ InputWriter::~InputWriter() = default;
 
 void InputWriter::restart() { model_ = nullptr; }
 
-std::string InputWriter::write(std::vector<OwnInput> inputs) {
-  std::string out;
-  if (inputs.empty()) return out;
-  out += model_ ? kGoesOn : kBegins;
-  if (!model_) model_ = std::make_unique<InputModel>();
-  RangeWriter coder(out);
-  for (OwnInput& in : inputs) model_->code(coder, true, in);
-  OwnInput none;
-  model_->code(coder, false, none);
-  coder.finish();
+std::vector<std::string> InputWriter::write(std::vector<OwnInput> inputs) {
+  std::vector<std::string> out;
+  // Lost if it throws: what follows could not be read.
+  std::unique_ptr<InputModel> model = model_ ? std::move(model_) : std::make_unique<InputModel>();
+  for (auto in = inputs.begin(); in != inputs.end();) {
+    std::string& piece = out.emplace_back();
+    putNumber(piece, model->piece++);
+    RangeWriter coder(piece);
+    model->begin();
+    std::size_t bytes = 0;
+    do {
+      bytes += sizeOf(*in);
+      if (sizeOf(*in) > kMostInput)
+        throw Error(fmt::format("an input of {} bytes is too long to be recorded", sizeOf(*in)));
+      model->code(coder, true, *in++);
+    } while (in != inputs.end() && bytes + sizeOf(*in) <= kPieceBytes);
+    OwnInput none;
+    model->code(coder, false, none);
+    coder.finish();
+  }
+  model_ = std::move(model);
   return out;
 }
 
 InputReader::InputReader() = default;
 InputReader::~InputReader() = default;
 
+void InputReader::restart() { model_ = nullptr; }
+
 void InputReader::read(std::string_view piece, std::vector<OwnInput>& out) {
-  if (piece.empty()) return;
-  if (piece.front() == kBegins) model_ = std::make_unique<InputModel>();
-  if (!model_ || (piece.front() != kBegins && piece.front() != kGoesOn))
-    throw Error("inputs are damaged: expected a piece that needs none before");
-  RangeReader coder(piece.substr(1));
   std::unique_ptr<InputModel> model = std::move(model_);  // lost if the piece is damaged
-  std::size_t bytes = 0;
-  for (OwnInput in; model->code(coder, true, in); in = {}) {
-    bytes += sizeof in + in.place.size() + in.text.size();
-    if (bytes > kMostBytes) throw Error("inputs are damaged: they are too many");
-    out.push_back(std::move(in));
-  }
+  const std::uint64_t number = takeNumber(piece);
+  if (number == 0) model = std::make_unique<InputModel>();
+  if (!model || number != model->piece)
+    throw Error(fmt::format("inputs are missing: expected a piece with the number {}, found {}",
+                            model ? model->piece : 0, number));
+  ++model->piece;
+  RangeReader coder(piece);
+  model->begin();
+  for (OwnInput in; model->code(coder, true, in); in = {}) out.push_back(std::move(in));
   coder.finish();
   model_ = std::move(model);
 }

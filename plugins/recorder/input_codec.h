@@ -32,8 +32,10 @@ class InputBatch {
  public:
   void add(const Input& input);
   bool empty() const { return entries_.empty(); }
-  /// Memory that it takes.
-  std::size_t bytes() const { return entries_.size() * sizeof(Entry) + texts_.size(); }
+  /// Memory that it takes, until it is encoded.
+  std::size_t bytes() const { return entries_.size() * (sizeof(Entry) + sizeof(OwnInput)) + 2 * texts_.size(); }
+  /// An empty one with room for as much.
+  InputBatch next() const;
   std::vector<OwnInput> inputs() const;
 
  private:
@@ -49,8 +51,8 @@ class InputBatch {
 
 struct InputModel;
 
-/// Writes inputs as pieces, each of which needs those before, back to the last restart. A piece is a byte, 1 if it
-/// needs none, and bits of a range coder (range_coder.h), whose chances come from the inputs before:
+/// Writes inputs as pieces, each of which needs those before, back to the last restart. A piece is a varint, its number
+/// since then from 0, and bits of a range coder (range_coder.h), whose chances come from the inputs before:
 ///
 ///     inputs     kind, number (a difference to the last one of the kind), and if it has them: client, text
 ///     client     place and key: the one that followed the last one before, another one that is known, or a new one
@@ -59,16 +61,17 @@ struct InputModel;
 ///     word       its characters without numbers, once; each time its numbers, as differences to what the client sent
 ///                last in their place
 ///
-/// A number of a text is a decimal one that is written back with the same characters, not behind a letter or a digit.
-/// What is known is limited, so that no client takes memory with it.
+/// A number of a text is a decimal one that is written back with the same characters, not behind a letter, a digit, a
+/// point or '_'. What is known is limited, so that no client takes memory with it.
 class InputWriter {
  public:
   InputWriter();
   ~InputWriter();
   /// The next piece needs none before.
   void restart();
-  /// The inputs as a piece; "" if there are none.
-  std::string write(std::vector<OwnInput> inputs);
+  /// The inputs as pieces: none if there are none, more than one if they are long. Throws Error if an input has more
+  /// than 48 MB; the next piece then needs none before.
+  std::vector<std::string> write(std::vector<OwnInput> inputs);
 
  private:
   std::unique_ptr<InputModel> model_;  ///< nullptr: the next piece needs none before
@@ -79,11 +82,13 @@ class InputReader {
  public:
   InputReader();
   ~InputReader();
+  /// Forgets the pieces before.
+  void restart();
   /// Appends the inputs of a piece. Throws Error if it is damaged, or if pieces before it are missing.
   void read(std::string_view piece, std::vector<OwnInput>& out);
 
  private:
-  std::unique_ptr<InputModel> model_;  ///< nullptr: no piece was read yet, or a damaged one
+  std::unique_ptr<InputModel> model_;  ///< nullptr: no piece was read since the restart, or a damaged one
 };
 
 }  // namespace spark::recorder

@@ -125,7 +125,7 @@ class Reader {
   /// Time of the last chunk's end; 0 if there is none.
   Time end() const { return chunks_.empty() ? 0 : chunks_.back().end; }
   /// Calls `take` with the messages of a chunk in their order, until it returns false. A chunk that is damaged has none
-  /// beyond the damage; that is added to lacks(). False if `take` did.
+  /// beyond the damage; that is added to lacks(). False if it is damaged, as far as it was read.
   bool forEach(const Chunk& chunk, const std::function<bool(const Message&)>& take);
 
  private:

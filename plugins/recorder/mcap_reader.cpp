@@ -238,8 +238,9 @@ bool Reader::forEach(const Chunk& chunk, const std::function<bool(const Message&
         fmt::format("the chunk from {:.3f} to {:.3f} s is damaged: {}", static_cast<double>(chunk.begin) * 1e-9,
                     static_cast<double>(chunk.end) * 1e-9, e.what());
     if (std::find(lacks_.begin(), lacks_.end(), line) == lacks_.end()) lacks_.push_back(line);
+    return false;
   }
-  return more;
+  return true;
 }
 
 }  // namespace spark::mcap

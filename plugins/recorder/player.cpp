@@ -124,6 +124,8 @@ void InputPlayer::goTo(recorder::StateAt at) {
   chunk_ = at.chunk;
   std::string state;
   inputs_.clear();
+  pieces_.clear();
+  inputReader_.restart();
   const std::uint16_t states = reader_->channelOf(recorder::kStates);
   reader_->forEach(reader_->chunks()[chunk_], [&](const mcap::Message& m) {
     if (m.channel == states && m.time == at.time) state = m.data;
@@ -146,9 +148,10 @@ void InputPlayer::goTo(recorder::StateAt at) {
 bool InputPlayer::skipHole() {
   const std::uint16_t states = reader_->channelOf(recorder::kStates);
   std::optional<recorder::StateAt> next;
-  for (std::size_t i = chunk_; i < reader_->chunks().size() && !next; ++i)
+  const mcap::Time now = timeNow();
+  for (std::size_t i = chunk_ > 0 ? chunk_ - 1 : 0; i < reader_->chunks().size() && !next; ++i)
     reader_->forEach(reader_->chunks()[i], [&](const mcap::Message& m) {
-      if (m.channel == states) next = {i, m.time};
+      if (m.channel == states && m.time > now) next = {i, m.time};
       return !next;
     });
   const std::int64_t last = cycle_;
@@ -164,15 +167,12 @@ bool InputPlayer::skipHole() {
 /// Reads the next chunk; false if there is none.
 bool InputPlayer::readChunk() {
   if (!reader_ || hole_ || chunk_ >= reader_->chunks().size()) return false;
-  const std::size_t lacked = reader_->lacks().size();
   const std::uint16_t inputs = reader_->channelOf(recorder::kInputs), hashes = reader_->channelOf(recorder::kHashes),
                       states = reader_->channelOf(recorder::kStates);
-  reader_->forEach(reader_->chunks()[chunk_++], [&](const mcap::Message& m) {
+  hole_ = !reader_->forEach(reader_->chunks()[chunk_++], [&](const mcap::Message& m) {
     if (m.time <= after_ && m.channel != states) return true;
     if (m.channel == inputs) {
-      std::vector<OwnInput> read;
-      inputReader_.read(m.data, read);
-      inputs_.insert(inputs_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
+      pieces_.emplace_back(m.data);
     } else if (m.channel == hashes) {
       const auto j = nlohmann::json::parse(m.data, nullptr, false);
       if (j.is_object() && j.contains("cycle") && j["cycle"].is_number_integer() && j.contains("state") &&
@@ -183,7 +183,24 @@ bool InputPlayer::readChunk() {
     }
     return true;
   });
-  hole_ = reader_->lacks().size() > lacked;
+  return true;
+}
+
+/// Decodes the next piece of inputs; false if there is none. One that is damaged is the end of what can be read.
+bool InputPlayer::readPiece() {
+  if (pieces_.empty()) return false;
+  const std::string piece = std::move(pieces_.front());
+  pieces_.pop_front();
+  std::vector<OwnInput> read;
+  try {
+    inputReader_.read(piece, read);
+  } catch (const Error& e) {
+    hole_ = true;
+    pieces_.clear();
+    holes_.push_back(fmt::format("what follows cycle {}: {}", cycle_, e.what()));
+    return false;
+  }
+  inputs_.insert(inputs_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
   return true;
 }
 
@@ -195,7 +212,7 @@ void InputPlayer::fill() {
       if (i.kind == Input::Kind::cycle && ++cycles == 2) return true;
     return false;
   };
-  while (!begun() && readChunk()) continue;
+  while (!begun() && (readPiece() || readChunk())) continue;
 }
 
 /// What comes next on the tape; nullptr at its end.
@@ -208,7 +225,7 @@ const OwnInput* InputPlayer::next() {
 void InputPlayer::lost(std::string_view asked) {
   if (std::exchange(lost_, true)) return;
   const OwnInput* const found = next();
-  if (!reader_->lacks().empty())
+  if (!lacks().empty())
     kernel().log().warning("{}: the recording lacks what follows cycle {}", path(), cycle_);
   else
     differs(cycle_, fmt::format("the simulation asks for {}, the recording has {}", asked,

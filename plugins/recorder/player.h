@@ -49,6 +49,7 @@ class InputPlayer : public Node, public IInputTape {
   class Connection;
   void fill();
   bool readChunk();
+  bool readPiece();
   bool skipHole();
   void goTo(recorder::StateAt at);
   const recorder::OwnInput* next();
@@ -68,6 +69,7 @@ class InputPlayer : public Node, public IInputTape {
   bool hole_ = false;               ///< what follows inputs_ is damaged
   std::vector<std::string> holes_;  ///< what was left out, a sentence each
   recorder::InputReader inputReader_;
+  std::deque<std::string> pieces_;              ///< of inputs, read and not yet decoded
   std::deque<recorder::OwnInput> inputs_;       ///< read and not yet passed
   std::map<std::int64_t, std::string> hashes_;  ///< by cycle: read and not yet compared
   std::map<mcap::Time, std::string> frames_;    ///< states, likewise

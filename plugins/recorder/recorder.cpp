@@ -147,11 +147,11 @@ void Recorder::endCycle(const Event& event) {
 }
 
 void Recorder::writeInputs(mcap::Time time) {
-  const auto batch = std::make_shared<recorder::InputBatch>(std::exchange(inputs_, {}));
+  const auto batch = std::make_shared<recorder::InputBatch>(std::exchange(inputs_, inputs_.next()));
   recording_->later(batch->bytes(), [writer = inputWriter_, batch, time, channel = inputChannel_,
                                      restarts = std::exchange(inputsRestart_, false)](const auto& put) {
     if (restarts) writer->restart();
-    put(channel, time, writer->write(batch->inputs()));
+    for (const std::string& piece : writer->write(batch->inputs())) put(channel, time, piece);
   });
 }
 

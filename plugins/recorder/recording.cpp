@@ -98,7 +98,7 @@ void Recording::queue(Item item) {
     queued_ += item.bytes();
     urgent |= queued_ >= kWakeBytes && !before;
     if (queued_ > maxQueued_) {
-      failure_ = fmt::format("more than {} MB wait for the disk", maxQueued_ >> 20);
+      failure_ = fmt::format("more than {} MB wait to be written", maxQueued_ >> 20);
       return;
     }
     items_.push_back(std::move(item));

@@ -19,7 +19,7 @@ namespace spark::recorder {
 /// is full, the recording ends, and failure() says so. One thread calls them.
 class Recording {
  public:
-  /// Opens the file. `maxQueued`: bytes that may wait for the disk. Throws Error if it cannot be written.
+  /// Opens the file. `maxQueued`: bytes that may wait to be written. Throws Error if it cannot be written.
   Recording(const std::string& file, std::string library, std::size_t maxQueued = 256u << 20);
   /// Writes what is queued, and the end, unless it has failed: readers then say that the end is missing.
   ~Recording();

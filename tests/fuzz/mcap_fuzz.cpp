@@ -19,7 +19,8 @@ void readPiece(std::string_view bytes) {
     reader.read(bytes, out);
     spark::recorder::InputWriter writer;
     std::vector<spark::recorder::OwnInput> again;
-    spark::recorder::InputReader().read(writer.write(out), again);
+    spark::recorder::InputReader second;
+    for (const std::string& piece : writer.write(out)) second.read(piece, again);
     if (again != out) std::abort();
   } catch (const spark::Error&) {
   }

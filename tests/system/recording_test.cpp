@@ -254,7 +254,7 @@ TEST_CASE("One changed byte of an input is found: the cycle, and by the next sta
                 std::find_if(i, inputs.end(), [](const auto& in) { return in.kind == Input::Kind::cycle; })->number;
           }
           writer.restart();
-          data = writer.write(inputs);
+          data = writer.write(inputs).at(0);
         }
         to.message(m.channel, m.time, data);
         return true;

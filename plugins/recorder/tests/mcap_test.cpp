@@ -78,7 +78,7 @@ TEST_CASE("A chunk can be left early") {
   const File file(sample());
   Reader r(file.name);
   int n = 0;
-  CHECK_FALSE(r.forEach(r.chunks()[0], [&](const Message&) { return ++n < 4; }));
+  CHECK(r.forEach(r.chunks()[0], [&](const Message&) { return ++n < 4; }));
   CHECK(n == 4);
 }
 

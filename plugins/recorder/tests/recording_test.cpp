@@ -51,7 +51,7 @@ TEST_CASE("A recording for which the disk is too slow ends, and its readers say 
     const std::uint16_t a = r.channel({0, "/a", "raw"});
     r.message(a, 0, "before");
     r.message(a, 1, std::string(2 << 20, 'x'));
-    CHECK(r.failure() == "more than 1 MB wait for the disk");
+    CHECK(r.failure() == "more than 1 MB wait to be written");
     r.message(a, 2, "after");
   }
   mcap::Reader reader(file);
