@@ -224,7 +224,7 @@ void WorldModel::setGravityMode(BodyHandle body, bool on) {
 
 namespace {
 // Position, quaternion, 1 if the rotation is that of the quaternion to the last bit, velocities, accumulated force and
-// torque, awake, gravity and the two counters of auto-disable; behind a 0 the rotation.
+// torque, awake, gravity and the two counters of auto-disable; at the end the rotation, if it is another one.
 constexpr std::size_t kSaved = 3 + 4 + 1 + 3 + 3 + 3 + 3 + 4, kSavedRotation = 9;
 
 bool sameBits(const Mat3& a, const Mat3& b) { return std::memcmp(a.data(), b.data(), sizeof(double) * 9) == 0; }

@@ -76,13 +76,15 @@ std::string colors(const Json& node) {
 /// Of a transform that has `before` others before it. Throws Error where it is damaged.
 web::Mount mountOf(const Json& node, std::size_t before) {
   web::Mount out;
-  out.on = node.value("on", -1);
-  if (out.on < 0) return {};
-  const auto pin = node.value("pin", std::vector<float>());
-  if (static_cast<std::size_t>(out.on) >= before || pin.size() != 3)
+  const auto on = node.find("on");
+  if (on == node.end()) return out;
+  const auto pin = node.value("pin", std::vector<double>());
+  if (!on->is_number_unsigned() || on->get<std::uint64_t>() >= before || pin.size() != 3)
     throw Error("its scene is damaged: expected a transform before, and a point");
-  out.pin = Vec3f(pin[0], pin[1], pin[2]);
-  if (!out.pin.allFinite()) throw Error("its scene is damaged: a point is not finite");
+  out.on = on->get<int>();
+  const Vec3 point(pin[0], pin[1], pin[2]);
+  if (!(point.norm() <= web::kMostPin)) throw Error("its scene is damaged: a point is too far from its transform");
+  out.pin = point.cast<float>();
   return out;
 }
 
@@ -147,7 +149,7 @@ void RecordedMatch::close() {
 void RecordedMatch::open(const std::string& file) {
   close();
   auto reader = std::make_unique<mcap::Reader>(file);
-  pieceChannel_ = reader->channelOf(recorder::kPieces);
+  pieceChannel_ = recorder::channelOf(*reader, recorder::kPieces, recorder::kMatchEncoding);
   sceneChannel_ = reader->channelOf(recorder::kScenes);
   if (pieceChannel_ == 0 || sceneChannel_ == 0)
     throw Error(

@@ -113,55 +113,81 @@ TEST_CASE("With MuJoCo in real time a model takes over when it did, in the recor
   CHECK(line["differs"].is_null());
 }
 
-TEST_CASE("A recording shows browsers the poses of the simulation") {
+TEST_CASE("A recording shows browsers, and programs that know /tf, the poses of the simulation") {
   using namespace spark;
-  Recorded match(
-      "soccer-sphere.lua", "sphere-team", 2,
-      joined(joined(kLockstep, withoutLimits()), {"--duration", "10", "--set", "Soccer.AutomaticKickOff=true"}));
+  Recorded match("soccer.lua", "humanoid-team", 2,
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "6", "--set", "Soccer.AutomaticKickOff=true",
+                                                             "--set", "Soccer.WaitBeforeKickOff=1"}));
   match.end();
   mcap::Reader reader(match.file);
-  // Where the ball is, in /tf and in the pieces, by milliseconds.
-  std::map<std::int64_t, double> expected, found;
+  // Where transforms are, in /tf and in the pieces, by milliseconds and path.
+  std::map<std::int64_t, std::map<std::string, Pose>> expected, found;
   struct Scene {
     std::vector<web::Mount> mounts;
-    std::size_t ball = 0;
+    std::vector<std::string> paths;
+    std::vector<int> parents;  ///< -1: none
   };
   std::map<std::uint32_t, Scene> scenes;
   for (const auto& chunk : reader.chunks())
     reader.forEach(chunk, [&](const mcap::Message& m) {
       if (m.channel == reader.channelOf("/tf")) {
+        std::map<std::string, Pose>& poses = expected[m.time / 1'000'000];
         const Json places = Json::parse(m.data);
-        for (const Json& t : places["transforms"])
-          if (t["child_frame_id"] == "/usr/scene/Ball") expected[m.time / 1'000'000] = t["translation"]["x"];
+        for (const Json& t : places["transforms"]) {
+          const Json &p = t["translation"], &q = t["rotation"];
+          Pose pose{Vec3(p["x"], p["y"], p["z"]), rotationOf(std::array<double, 4>{q["w"], q["x"], q["y"], q["z"]})};
+          if (t["parent_frame_id"] != "world") pose = compose(poses.at(t["parent_frame_id"]), pose);
+          poses[t["child_frame_id"]] = pose;
+        }
       }
       if (m.channel == reader.channelOf("/monitor/scenes")) {
         const web::test::ReadPiece message(m.data);
         Scene& scene = scenes[message.shape];
         const Json described = Json::parse(message.texts.at(0));
+        std::vector<int> numbers;  // of the nodes, among transforms
         for (const Json& node : described["nodes"]) {
+          const int parent = node["parent"];
+          numbers.push_back(static_cast<int>(scene.mounts.size()));
           if (node["kind"] != "transform") continue;
-          if (node["path"] == "/usr/scene/Ball") scene.ball = scene.mounts.size();
-          scene.mounts.emplace_back();
+          web::Mount mount;
+          if (node.contains("on")) {
+            mount.on = node["on"];
+            for (int k = 0; k < 3; ++k) mount.pin[k] = node["pin"][static_cast<std::size_t>(k)];
+          }
+          scene.mounts.push_back(mount);
+          scene.paths.push_back(node["path"]);
+          scene.parents.push_back(parent < 0 ? -1 : numbers[static_cast<std::size_t>(parent)]);
         }
       }
       if (m.channel != reader.channelOf("/monitor")) return true;
       const web::test::ReadPiece piece(m.data);
       const Scene& scene = scenes.at(piece.shape);
       web::test::FrameReader frames(scene.mounts.size());
+      frames.mounts = scene.mounts;
       for (const std::string& frame : piece.frames) {
         frames.take(frame);
-        found[std::llround(frames.time * 1000)] =
-            std::ldexp(static_cast<double>(frames.quantised.at(scene.ball)[0]), -frames.positionBits);
+        std::vector<Pose> worlds;
+        for (std::size_t i = 0; i < scene.paths.size(); ++i) {
+          const int parent = scene.parents[i];
+          const Pose local = frames.poseOf(i);
+          worlds.push_back(parent < 0 ? local : compose(worlds[static_cast<std::size_t>(parent)], local));
+          found[std::llround(frames.time * 1000)][scene.paths[i]] = worlds.back();
+        }
       }
       return true;
     });
-  int compared = 0;
-  for (const auto& [time, x] : expected)
-    if (const auto at = found.find(time); at != found.end()) {
-      CHECK(at->second == Approx(x).margin(0.002));
-      ++compared;
-    }
-  CHECK(compared >= 4);
+  int compared = 0, limbs = 0;
+  for (const auto& [time, poses] : expected)
+    for (const auto& [path, pose] : poses)
+      if (const auto frame = found.find(time); frame != found.end() && frame->second.contains(path)) {
+        INFO(time << ' ' << path);
+        CHECK((frame->second[path].position - pose.position).norm() < 0.005);
+        CHECK((frame->second[path].rotation - pose.rotation).cwiseAbs().maxCoeff() < 0.01);
+        ++compared;
+        limbs += path.ends_with("/rfoot") || path.ends_with("/llowerarm");
+      }
+  CHECK(compared >= 100);
+  CHECK(limbs >= 12);
 }
 
 TEST_CASE("A host that was killed leaves a recording that can be simulated up to its last chunk") {

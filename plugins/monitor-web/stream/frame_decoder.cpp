@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "spark/error.h"
@@ -94,26 +93,9 @@ void FrameDecoder::take(std::string_view frame) {
 }
 
 void FrameDecoder::place() {
-  const float metres = std::ldexp(1.f, -positionBits_), units = std::ldexp(1.f, -rotationBits_);
   for (std::size_t i = 0; i < now_.size(); ++i) {
-    const Quantised& v = now_[i];
-    const auto number = [&v](std::size_t k) { return static_cast<float>(v[k]); };
-    Vec3f position = Vec3f(number(0), number(1), number(2)) * metres;
-    Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
-    if (const Mount& mount = mounts_[i]; mount.on >= 0) {
-      const Matrix& other = places_[static_cast<std::size_t>(mount.on)];
-      const Vec3f half = Vec3f(number(3), number(4), number(5)) * (units / 4);  // tan(angle / 4)
-      const float s = half.squaredNorm();
-      Eigen::Quaternionf q;
-      q.w() = (1 - s) / (1 + s);
-      q.vec() = half * (2 / (1 + s));
-      rotation = other.block<3, 3>(0, 0) * q.toRotationMatrix();
-      position = positionOf(other) + other.block<3, 3>(0, 0) * position - rotation * mount.pin;
-    } else if (const Eigen::Quaternionf q(number(6), number(3), number(4), number(5)); q.squaredNorm() > 0) {
-      rotation = q.normalized().toRotationMatrix();
-    }
-    places_[i].block<3, 3>(0, 0) = rotation;
-    places_[i].block<3, 1>(0, 3) = position;
+    const Matrix& other = places_[static_cast<std::size_t>(std::max(mounts_[i].on, 0))];
+    places_[i] = placeOf(now_[i], mounts_[i], other, {positionBits_, rotationBits_});
   }
 }
 

@@ -106,7 +106,7 @@ std::vector<Mount> mountsOf(const std::vector<const Transform*>& transforms) {
     if (type == engine::JointType::slider || type == engine::JointType::fixed) continue;  // they hold no point
     const Matrix& world = later->world();
     const Vec3f pin = world.block<3, 3>(0, 0).transpose() * (joint->anchor().cast<float>() - positionOf(world));
-    if (pin.allFinite()) mount.pin = Vec3f(rounded(pin.x()), rounded(pin.y()), rounded(pin.z()));
+    if (pin.norm() <= kMostPin) mount.pin = Vec3f(rounded(pin.x()), rounded(pin.y()), rounded(pin.z()));
   }
   return out;
 }

@@ -14,7 +14,7 @@ constexpr std::size_t kMinGap = 3;
 
 // Hysteresis in quanta: a value changes only if it is this far from the current one, so noise around the midpoint of
 // two quanta sends nothing.
-constexpr float kHysteresis = 0.75f;
+constexpr float kHysteresis = 1.f;
 
 constexpr float kMaxQuantised = 1 << 30;
 
@@ -42,28 +42,52 @@ void putSigned(std::string& out, std::int64_t value) {
   putVarint(out, static_cast<std::uint64_t>(value) << 1 ^ static_cast<std::uint64_t>(value >> 63));
 }
 
-Quantised StreamEncoder::quantise(const Instant& instant, std::size_t i, const Quantised& before) const {
-  const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
-  const Matrix& m = instant.transforms[i];
-  const Mount mount = instant.mounts.empty() ? Mount{} : instant.mounts[i];
-  Vec3f position = positionOf(m);
-  Eigen::Quaternionf q = rotationOf(m);
-  Quantised out{};
+Matrix placeOf(const Quantised& value, const Mount& mount, const Matrix& other, Precision precision) {
+  const float metres = std::ldexp(1.f, -precision.position), units = std::ldexp(1.f, -precision.rotation);
+  const auto number = [&value](std::size_t k) { return static_cast<float>(value[k]); };
+  Vec3f position = Vec3f(number(0), number(1), number(2)) * metres;
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
   if (mount.on >= 0) {
-    const Matrix& other = instant.transforms[static_cast<std::size_t>(mount.on)];
-    const Eigen::Quaternionf back = rotationOf(other).conjugate();
-    position = back * (position + q * mount.pin - positionOf(other));
-    q = back * q;
-    const Vec3f turn = q.vec() * (4 * perUnit / (1 + std::abs(q.w())));
-    for (std::size_t k = 0; k < 3; ++k) out[3 + k] = quantum(q.w() < 0 ? -turn[k] : turn[k], before[3 + k]);
-  } else {
-    const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
-                               static_cast<float>(before[5]), static_cast<float>(before[6]));
-    // q and -q are the same rotation: take the nearer one.
-    const Eigen::Vector4f turn = q.coeffs() * (q.coeffs().dot(last) < 0 ? -perUnit : perUnit);
-    for (std::size_t k = 0; k < 4; ++k) out[3 + k] = quantum(turn[k], before[3 + k]);
+    const Vec3f half = Vec3f(number(3), number(4), number(5)) * (units / 2);  // tan(angle / 4)
+    const float s = half.squaredNorm();
+    Eigen::Quaternionf q;
+    q.w() = (1 - s) / (1 + s);
+    q.vec() = half * (2 / (1 + s));
+    rotation = other.block<3, 3>(0, 0) * q.toRotationMatrix();
+    position = positionOf(other) + other.block<3, 3>(0, 0) * position - rotation * mount.pin;
+  } else if (const Eigen::Quaternionf q(number(6), number(3), number(4), number(5)); q.squaredNorm() > 0) {
+    rotation = q.normalized().toRotationMatrix();
   }
-  for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(position[k] * perMetre, before[k]);
+  Matrix out = Matrix::Identity();
+  out.block<3, 3>(0, 0) = rotation;
+  out.block<3, 1>(0, 3) = position;
+  return out;
+}
+
+Quantised StreamEncoder::quantise(const Matrix& m, const Quantised& before) const {
+  const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
+  Quantised out{};
+  for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(positionOf(m)[k] * perMetre, before[k]);
+  const Eigen::Vector4f q = rotationOf(m).coeffs();
+  const Eigen::Vector4f last(static_cast<float>(before[3]), static_cast<float>(before[4]),
+                             static_cast<float>(before[5]), static_cast<float>(before[6]));
+  const float sign = q.dot(last) < 0 ? -1.f : 1.f;  // q and -q are the same rotation: take the nearer one
+  for (std::size_t k = 0; k < 4; ++k) out[3 + k] = quantum(sign * q[k] * perUnit, before[3 + k]);
+  return out;
+}
+
+/// Relative to where viewers have the other one, so that errors do not add up.
+Quantised StreamEncoder::quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m,
+                                    const Quantised& before) const {
+  const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
+  const Eigen::Matrix3f back = other.block<3, 3>(0, 0).transpose();
+  Quantised out{};
+  const Eigen::Quaternionf q(Eigen::Matrix3f(back * rotationOf(m).toRotationMatrix()));
+  const Vec3f turn = q.vec() * ((q.w() < 0 ? -2 : 2) * perUnit / (1 + std::abs(q.w())));
+  for (std::size_t k = 0; k < 3; ++k) out[3 + k] = quantum(turn[k], before[3 + k]);
+  const Matrix turned = placeOf(out, mount, other, precision_);  // its pin where the other one is
+  const Vec3f pin = back * (positionOf(m) - positionOf(turned));
+  for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(pin[k] * perMetre, before[k]);
   return out;
 }
 
@@ -77,7 +101,15 @@ void StreamEncoder::advance(const Instant& instant) {
   }
   std::swap(before_, now_);
   now_.resize(size);
-  for (std::size_t i = 0; i < size; ++i) now_[i] = quantise(instant, i, before_[i]);
+  places_.resize(instant.mounts.size());
+  for (std::size_t i = 0; i < size; ++i) {
+    const Mount mount = instant.mounts.empty() ? Mount{} : instant.mounts[i];
+    const Matrix& other =
+        places_.empty() ? instant.transforms[i] : places_[static_cast<std::size_t>(std::max(mount.on, 0))];
+    now_[i] = mount.on < 0 ? quantise(instant.transforms[i], before_[i])
+                           : quantiseOn(other, mount, instant.transforms[i], before_[i]);
+    if (!places_.empty()) places_[i] = placeOf(now_[i], mount, other, precision_);
+  }
   toggled_.assign(instant.toggled.begin(), instant.toggled.end());
   toggledNow_.clear();
   for (const std::uint32_t node : toggled_)

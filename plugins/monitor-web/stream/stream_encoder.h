@@ -30,6 +30,9 @@ struct Mount {
   Vec3f pin = Vec3f::Zero();  ///< the point that the joint holds, in the frame of the transform itself [m]
 };
 
+/// Most distance of a pin from its transform [m].
+inline constexpr double kMostPin = 1000;
+
 /// Input of the encoder: the scene at one instant. The arrays belong to the caller.
 struct Instant {
   std::uint32_t shape = 0;                 ///< number of the scene that it belongs to
@@ -41,8 +44,11 @@ struct Instant {
 };
 
 /// A transform in quanta: position x y z and quaternion x y z w. With a mount: the place of the pin in the frame of the
-/// other transform, the axis of the rotation from there times 4 tan(angle / 4), and 0.
+/// other transform, the axis of the rotation from there times 2 tan(angle / 4), and 0.
 using Quantised = std::array<std::int32_t, 7>;
+
+/// The matrix of a transform as viewers have it. `other`: that of the transform on which it is; not used without one.
+Matrix placeOf(const Quantised& value, const Mount& mount, const Matrix& other, Precision precision);
 
 /// A stream of frames at one precision. A delta is relative to the previous frame; a viewer that missed that one needs
 /// a key frame.
@@ -64,7 +70,8 @@ class StreamEncoder {
   std::uint32_t shape() const { return shape_; }
 
  private:
-  Quantised quantise(const Instant& instant, std::size_t i, const Quantised& before) const;
+  Quantised quantise(const Matrix& m, const Quantised& before) const;
+  Quantised quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m, const Quantised& before) const;
   void begin(std::string& out, MessageKind kind) const;
   void writeTransforms(std::string& out, const std::vector<Quantised>& before) const;
   void writeVisibility(std::string& out, const std::vector<std::uint32_t>& nodes) const;
@@ -74,6 +81,7 @@ class StreamEncoder {
   double time_ = 0;
   bool hasDelta_ = false;
   std::vector<Quantised> now_, before_, zero_;  ///< current and previous frame; zeros, to which a key frame is relative
+  std::vector<Matrix> places_;                  ///< as viewers have them, if there are mounts
   std::vector<std::uint8_t> visible_;
   std::vector<std::uint32_t> toggled_, toggledNow_;  ///< all; those that changed in this frame
   std::string delta_, key_;

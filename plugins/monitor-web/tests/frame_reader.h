@@ -53,7 +53,7 @@ class FrameReader {
       return {place, rotation.normalized().toRotationMatrix()};
     }
     const Pose other = poseOf(static_cast<std::size_t>(mount.on));
-    const double angle = 4 * std::atan(turn.norm() / 4);
+    const double angle = 4 * std::atan(turn.norm() / 2);
     const Vec3 axis = turn.norm() > 0 ? turn.normalized() : Vec3::UnitX();
     Pose out;
     out.rotation = other.rotation * Eigen::AngleAxisd(angle, axis).toRotationMatrix();

@@ -40,6 +40,7 @@ struct Heap : EngineHost {
     return out;
   }
   void load(const std::vector<double>& all) {
+    // Bodies that have moved have their rotation from their quaternion, so they are saved in equally many numbers.
     const std::size_t each = all.size() / bodies.size();
     for (std::size_t i = 0; i < bodies.size(); ++i) world.loadBody(bodies[i], std::span(all).subspan(i * each, each));
   }

@@ -7,7 +7,7 @@
 ///   n times: varint node, u8 visible.
 ///
 /// A transform that is on another one has, in place of its position, that of its pin in the frame of the other one; and
-/// in place of x y z of its rotation, the axis of the rotation from there times 4 tan(angle / 4).
+/// in place of x y z of its rotation, the axis of the rotation from there times 2 tan(angle / 4).
 
 import type { SceneNode } from "../model";
 import type { Poses } from "../sources/poses";
@@ -156,7 +156,7 @@ export class FrameDecoder {
   private placeOn(poses: Poses, i: number, j: number, pin: [number, number, number], s: number, metres: number, units: number): void {
     const { steps } = this, { position, rotation } = poses;
     // The rotation from j to i: its vector part is the axis times sin(angle / 2).
-    const x = (steps[s + 3]! * units) / 4, y = (steps[s + 4]! * units) / 4, z = (steps[s + 5]! * units) / 4;
+    const x = (steps[s + 3]! * units) / 2, y = (steps[s + 4]! * units) / 2, z = (steps[s + 5]! * units) / 2;
     const square = x * x + y * y + z * z, scale = 2 / (1 + square), w = (1 - square) / (1 + square);
     multiply(rotation, 4 * j, x * scale, y * scale, z * scale, w, rotation, 4 * i);
     rotate(rotation, 4 * j, steps[s]! * metres, steps[s + 1]! * metres, steps[s + 2]! * metres, held);

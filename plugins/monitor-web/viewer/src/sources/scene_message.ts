@@ -4,6 +4,8 @@ import { Poses } from "./poses";
 /// Parses the scene message of the stream. Returns null if it is invalid.
 
 const kMostNodes = 100_000;
+/// Most distance of a pin from its transform [m].
+const kMostPin = 1000;
 const kKinds = new Set(["transform", "light", "mesh"]);
 const kShapes = new Map([
   ["box", 3],
@@ -54,7 +56,7 @@ function readNode(from: unknown, before: SceneNode[]): SceneNode | null {
     node.shapes = from.shapes;
   }
   if (node.kind === "transform" && from.on !== undefined) {
-    if (!Number.isInteger(from.on) || (from.on as number) < 0 || !isNumbers(from.pin, 3)) return null;
+    if (!Number.isInteger(from.on) || (from.on as number) < 0 || !isNumbers(from.pin, 3) || Math.hypot(...(from.pin as number[])) > kMostPin) return null;
     node.on = from.on as number;
     node.pin = from.pin as [number, number, number];
   }

@@ -66,7 +66,7 @@ test("a transform that is on another one turns with it about the pin", () => {
   const { decoder: d, poses, scene } = decoder([0, 2, 3], 4);
   Object.assign(scene[2]!, { on: 0, pin: [0, 0, 1] });
   Object.assign(scene[3]!, { on: 1, pin: [0, 2, 0] });
-  const half = Math.SQRT1_2 * 1024, quarter = 4 * Math.tan(Math.PI / 8) * 1024;
+  const half = Math.SQRT1_2 * 1024, quarter = 2 * Math.tan(Math.PI / 8) * 1024;
   const steps = [
     [1024, 0, 0, 0, 0, half, half], // at (1, 0, 0), turned by 90 degrees about z
     [2048, 0, 0, quarter, 0, 0, 0], // 2 m ahead of that one, which is y, is the pin; turned by 90 degrees about its x, which is y
