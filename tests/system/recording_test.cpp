@@ -246,6 +246,45 @@ TEST_CASE("A recording with a damaged chunk is simulated up to the damage, and o
   REQUIRE(line["lacks"].size() == 2);
   CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("s is damaged: "));
   CHECK_THAT(line["lacks"][1].get<std::string>(), Contains(fmt::format("to {:.0f}, after which it goes on", next)));
+  // Also where the chunk was met before, in the search for a state.
+  const std::string within = std::to_string(static_cast<double>(chunk.end) * 1e-9 + 0.5);
+  const Finished sought = runToEnd({program("sparkreplay"), match.file, "--verify", "--from", within});
+  CHECK(sought.code == 0);
+  CHECK(Json::parse(sought.out)["cycles"] == line["cycles"]);
+  CHECK(Json::parse(sought.out)["lacks"] == line["lacks"]);
+}
+
+TEST_CASE("A damaged piece of inputs is a hole, up to the next state, also one in its chunk") {
+  using namespace spark;
+  Recorded match("soccer-sphere.lua", "sphere-team", 2,
+                 joined(joined(kLockstep, withoutLimits()), {"--duration", "25"}));
+  match.end();
+  mcap::Reader from(match.file);
+  std::string bytes;
+  {
+    mcap::Writer to([&bytes](std::string_view more) { bytes += more; }, "test");
+    for (const auto& [number, channel] : from.channels()) to.channel({number, channel.topic, channel.encoding});
+    to.metadata("spark", from.metadataOf("spark"));
+    for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
+    for (const auto& chunk : from.chunks())
+      from.forEach(chunk, [&](const mcap::Message& m) {
+        std::string data(m.data);
+        if (m.channel == from.channelOf(recorder::kInputs) && m.time == 9'800'000'000) data = "\x01";
+        to.message(m.channel, m.time, data);
+        return true;
+      });
+    to.finish();
+  }
+  std::ofstream(match.file, std::ios::binary) << bytes;
+  const auto [line, code] = verify(match.file);
+  INFO(line.dump());
+  CHECK(code == 0);
+  CHECK(line["differs"].is_null());
+  CHECK(line["cycles"].get<int>() >= 1238);
+  CHECK(line["cycles"].get<int>() <= 1240);
+  REQUIRE(line["lacks"].size() == 2);
+  CHECK_THAT(line["lacks"][0].get<std::string>(), Contains("what follows cycle 4") && Contains("inputs are"));
+  CHECK_THAT(line["lacks"][1].get<std::string>(), Contains("to 500, after which it goes on"));
 }
 
 TEST_CASE("One changed byte of an input is found: the cycle, and by the next state node and property") {
