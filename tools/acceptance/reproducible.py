@@ -208,7 +208,7 @@ def cpu_of_simulation(arguments, seconds):
     return spent
 
 
-def cost(pairs=5, seconds=20):
+def cost(pairs=11, seconds=20):
     """What a recording costs the simulation's thread, in pairs, in turns."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "match.mcap"
