@@ -3,7 +3,8 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cstring>
+#include <bit>
+#include <cstdint>
 
 #include "shapes.h"
 
@@ -227,7 +228,11 @@ namespace {
 // torque, awake, gravity and the two counters of auto-disable; at the end the rotation, if it is another one.
 constexpr std::size_t kSaved = 3 + 4 + 1 + 3 + 3 + 3 + 3 + 4, kSavedRotation = 9;
 
-bool sameBits(const Mat3& a, const Mat3& b) { return std::memcmp(a.data(), b.data(), sizeof(double) * 9) == 0; }
+/// True if they are equal to the last bit: 0 is not -0.
+bool sameBits(const Mat3& a, const Mat3& b) {
+  const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v); };
+  return std::equal(a.data(), a.data() + a.size(), b.data(), [bits](double x, double y) { return bits(x) == bits(y); });
+}
 }  // namespace
 
 void WorldModel::saveBody(BodyHandle body, std::vector<double>& out) const {
