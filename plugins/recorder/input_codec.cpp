@@ -12,7 +12,6 @@
 namespace spark::recorder {
 
 namespace {
-constexpr char kGoesOn = 0, kBegins = 1;                   // first byte of a piece
 constexpr unsigned kEnd = 8;                               // among kinds of inputs: there are no more
 constexpr std::int64_t kMostTime = std::int64_t{1} << 53;  // us
 

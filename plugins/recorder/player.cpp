@@ -20,6 +20,11 @@ constexpr std::string_view kNames[] = {"a cycle",   "the wall clock", "a connect
                                        "a leaving", "a request",      "a command",    "a decision"};
 std::string_view nameOf(Input::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
+constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes: a recorder queues less
+
+std::string tooMany() { return fmt::format("a cycle has more than {} MB of inputs", kMostUnfinished >> 20); }
+std::size_t sizeOf(const OwnInput& in) { return sizeof in + in.place.size() + in.text.size(); }
+
 /// True for what play() passes on; all else is asked for.
 bool isPassed(Input::Kind kind) {
   return kind != Input::Kind::cycle && kind != Input::Kind::time && kind != Input::Kind::decision;
@@ -120,26 +125,28 @@ void InputPlayer::seek(double seconds) {
 }
 
 void InputPlayer::goTo(recorder::StateAt at) {
-  hole_ = false;
-  chunk_ = at.chunk;
   std::string state;
-  inputs_.clear();
-  pieces_.clear();
-  inputReader_.restart();
   const std::uint16_t states = reader_->channelOf(recorder::kStates);
-  reader_->forEach(reader_->chunks()[chunk_], [&](const mcap::Message& m) {
+  reader_->forEach(reader_->chunks()[at.chunk], [&](const mcap::Message& m) {
     if (m.channel == states && m.time == at.time) state = m.data;
     return state.empty();
   });
   recorder::addTexts(*reader_, at.time, kernel().sources());
   const Snapshot snapshot = snapshots_->read(state);
-  snapshots_->restore(snapshot, {});
-  cycle_ = from_ = snapshot.cycle;
-  ++states_;
-  // What came before belongs to earlier cycles.
-  after_ = at.time;
+  inputs_.clear();
+  pieces_.clear();
   hashes_.clear();
   frames_.clear();
+  cyclesAhead_ = 0;
+  unfinished_ = 0;
+  inputReader_.restart();
+  hole_ = true;  // if it cannot be restored
+  snapshots_->restore(snapshot, {});
+  hole_ = false;
+  chunk_ = at.chunk;
+  cycle_ = from_ = snapshot.cycle;
+  ++states_;
+  after_ = at.time;  // what came before belongs to earlier cycles
   readChunk();
   fill();
 }
@@ -147,17 +154,26 @@ void InputPlayer::goTo(recorder::StateAt at) {
 /// Goes on from the next state after a damaged chunk; false if there is none.
 bool InputPlayer::skipHole() {
   const std::uint16_t states = reader_->channelOf(recorder::kStates);
-  std::optional<recorder::StateAt> next;
-  const mcap::Time now = timeNow();
-  for (std::size_t i = chunk_ > 0 ? chunk_ - 1 : 0; i < reader_->chunks().size() && !next; ++i)
-    reader_->forEach(reader_->chunks()[i], [&](const mcap::Message& m) {
-      if (m.channel == states && m.time > now) next = {i, m.time};
-      return !next;
-    });
+  const std::size_t chunk = chunk_ > 0 ? chunk_ - 1 : 0;
   const std::int64_t last = cycle_;
-  if (next && snapshots_) {
-    goTo(*next);
-    holes_.push_back(fmt::format("cycles {} to {}, after which it goes on from a recorded state", last + 1, cycle_));
+  for (mcap::Time before = std::max(timeNow(), after_); snapshots_;) {
+    std::optional<recorder::StateAt> next;
+    for (std::size_t i = chunk; i < reader_->chunks().size() && !next; ++i)
+      reader_->forEach(reader_->chunks()[i], [&](const mcap::Message& m) {
+        if (m.channel == states && m.time > before) next = {i, m.time};
+        return !next;
+      });
+    if (!next) return false;
+    before = next->time;
+    try {
+      goTo(*next);
+    } catch (const Error& e) {
+      holes_.push_back(fmt::format("the state at {:.3f} s: {}", static_cast<double>(before) * 1e-9, e.what()));
+      continue;
+    }
+    holes_.push_back(
+        cycle_ > last ? fmt::format("cycles {} to {}, after which it goes on from a recorded state", last + 1, cycle_)
+                      : fmt::format("inputs behind cycle {}", last));
     kernel().log().warning("{}: the recording lacks {}", path(), holes_.back());
     return true;
   }
@@ -172,7 +188,7 @@ bool InputPlayer::readChunk() {
   hole_ = !reader_->forEach(reader_->chunks()[chunk_++], [&](const mcap::Message& m) {
     if (m.time <= after_ && m.channel != states) return true;
     if (m.channel == inputs) {
-      pieces_.emplace_back(m.data);
+      pieces_.emplace_back(m.time, m.data);
     } else if (m.channel == hashes) {
       const auto j = nlohmann::json::parse(m.data, nullptr, false);
       if (j.is_object() && j.contains("cycle") && j["cycle"].is_number_integer() && j.contains("state") &&
@@ -186,33 +202,42 @@ bool InputPlayer::readChunk() {
   return true;
 }
 
-/// Decodes the next piece of inputs; false if there is none. One that is damaged is the end of what can be read.
-bool InputPlayer::readPiece() {
+/// Decodes the next pieces of inputs, those of one cycle; false if there are none. What is damaged is the end of what
+/// can be read.
+bool InputPlayer::readPieces() {
   if (pieces_.empty()) return false;
-  const std::string piece = std::move(pieces_.front());
-  pieces_.pop_front();
   std::vector<OwnInput> read;
+  std::size_t counted = 0, bytes = 0;
   try {
-    inputReader_.read(piece, read);
+    for (const mcap::Time time = pieces_.front().first; !pieces_.empty() && pieces_.front().first == time;) {
+      inputReader_.read(pieces_.front().second, read);
+      pieces_.pop_front();
+      for (; counted < read.size(); ++counted) bytes += sizeOf(read[counted]);
+      if (bytes > kMostUnfinished) throw Error(tooMany());
+    }
+    append(std::move(read));
   } catch (const Error& e) {
     hole_ = true;
     pieces_.clear();
     holes_.push_back(fmt::format("what follows cycle {}: {}", cycle_, e.what()));
     return false;
   }
-  inputs_.insert(inputs_.end(), std::make_move_iterator(read.begin()), std::make_move_iterator(read.end()));
   return true;
+}
+
+/// Throws Error if a cycle would have more inputs than the memory of a run takes.
+void InputPlayer::append(std::vector<OwnInput> inputs) {
+  for (OwnInput& in : inputs) {
+    unfinished_ += sizeOf(in);
+    if (in.kind == Input::Kind::cycle) ++cyclesAhead_, unfinished_ = 0;
+    if (unfinished_ > kMostUnfinished) throw Error(tooMany());
+    inputs_.push_back(std::move(in));
+  }
 }
 
 /// Reads until a whole cycle is known, with its hash and state: until the next one has begun.
 void InputPlayer::fill() {
-  const auto begun = [this] {
-    int cycles = 0;
-    for (const OwnInput& i : inputs_)
-      if (i.kind == Input::Kind::cycle && ++cycles == 2) return true;
-    return false;
-  };
-  while (!begun() && (readPiece() || readChunk())) continue;
+  while (cyclesAhead_ < 2 && (readPieces() || readChunk())) continue;
 }
 
 /// What comes next on the tape; nullptr at its end.
@@ -225,7 +250,7 @@ const OwnInput* InputPlayer::next() {
 void InputPlayer::lost(std::string_view asked) {
   if (std::exchange(lost_, true)) return;
   const OwnInput* const found = next();
-  if (!lacks().empty())
+  if (!found && !lacks().empty())
     kernel().log().warning("{}: the recording lacks what follows cycle {}", path(), cycle_);
   else
     differs(cycle_, fmt::format("the simulation asks for {}, the recording has {}", asked,
@@ -325,7 +350,7 @@ bool InputPlayer::put(const Input& input) {
   if (!in || in->kind != Input::Kind::cycle || in->number != input.number)
     lost(fmt::format("cycle {}", input.number));
   else
-    inputs_.pop_front();
+    inputs_.pop_front(), --cyclesAhead_;
   cycle_ = input.number;
   return true;
 }

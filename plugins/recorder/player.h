@@ -49,7 +49,8 @@ class InputPlayer : public Node, public IInputTape {
   class Connection;
   void fill();
   bool readChunk();
-  bool readPiece();
+  bool readPieces();
+  void append(std::vector<recorder::OwnInput> inputs);
   bool skipHole();
   void goTo(recorder::StateAt at);
   const recorder::OwnInput* next();
@@ -69,8 +70,10 @@ class InputPlayer : public Node, public IInputTape {
   bool hole_ = false;               ///< what follows inputs_ is damaged
   std::vector<std::string> holes_;  ///< what was left out, a sentence each
   recorder::InputReader inputReader_;
-  std::deque<std::string> pieces_;              ///< of inputs, read and not yet decoded
-  std::deque<recorder::OwnInput> inputs_;       ///< read and not yet passed
+  std::deque<std::pair<mcap::Time, std::string>> pieces_;  ///< of inputs, read and not yet decoded
+  std::deque<recorder::OwnInput> inputs_;                  ///< read and not yet passed
+  int cyclesAhead_ = 0;                                    ///< beginnings of cycles in inputs_
+  std::size_t unfinished_ = 0;                  ///< bytes of inputs that were decoded since the last such beginning
   std::map<std::int64_t, std::string> hashes_;  ///< by cycle: read and not yet compared
   std::map<mcap::Time, std::string> frames_;    ///< states, likewise
   std::map<std::pair<std::string, std::uint64_t>, std::unique_ptr<Connection>> connections_;

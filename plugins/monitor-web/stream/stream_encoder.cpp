@@ -101,9 +101,9 @@ void StreamEncoder::advance(const Instant& instant) {
   }
   std::swap(before_, now_);
   now_.resize(size);
-  places_.resize(instant.mounts.size());
+  places_.resize(instant.mounts.size() == size ? size : 0);
   for (std::size_t i = 0; i < size; ++i) {
-    const Mount mount = instant.mounts.empty() ? Mount{} : instant.mounts[i];
+    const Mount mount = places_.empty() || instant.mounts[i].on >= static_cast<int>(i) ? Mount{} : instant.mounts[i];
     const Matrix& other =
         places_.empty() ? instant.transforms[i] : places_[static_cast<std::size_t>(std::max(mount.on, 0))];
     now_[i] = mount.on < 0 ? quantise(instant.transforms[i], before_[i])
