@@ -11,11 +11,12 @@
 namespace spark::recorder {
 
 namespace {
-constexpr int kDigits = 3;  // decimals of lengths [m] and quaternions
+constexpr int kDigits = 3;         // decimals of lengths [m] and quaternions
+constexpr double kLeast = 0.5e-3;  // what is smaller is written as zero
 
 /// Writes a number; no zero has a sign.
 void writeNumber(JsonWriter& json, const char* key, double v) {
-  json.key(key).fixed(std::abs(v) < 0.5e-3 ? 0.0 : v, kDigits);
+  json.key(key).fixed(std::abs(v) < kLeast ? 0.0 : v, kDigits);
 }
 
 void writeVector(JsonWriter& json, const char* key, double x, double y, double z) {

@@ -23,11 +23,9 @@ constexpr std::size_t kMostPlaceLength = 200, kMostWordLength = 200, kMostNumber
 constexpr std::uint32_t kTextEnd = 0, kNewWord = 1, kFirstWord = 2;  // among words
 constexpr unsigned kChanges = 24;  // differences are told apart by how many bits the one before had
 
-// Bytes of the inputs of a piece: a reader takes no more, a writer begins another one after so many.
+// A reader takes at most kMostBytes of inputs from a piece. A writer puts about kPieceBytes into one, and refuses a
+// single input of more than kMostInput.
 constexpr std::size_t kMostBytes = 64u << 20, kPieceBytes = 16u << 20, kMostInput = 48u << 20;
-
-/// The memory that an input takes.
-std::size_t sizeOf(const OwnInput& in) { return sizeof in + in.place.size() + in.text.size(); }
 
 /// True if inputs of a kind have place, key and text; the others have a number only.
 bool isLong(Input::Kind kind) { return kind != Input::Kind::cycle && kind != Input::Kind::time; }
@@ -381,11 +379,11 @@ std::vector<std::string> InputWriter::write(std::vector<OwnInput> inputs) {
     model->begin();
     std::size_t bytes = 0;
     do {
-      bytes += sizeOf(*in);
-      if (sizeOf(*in) > kMostInput)
-        throw Error(fmt::format("an input of {} bytes is too long to be recorded", sizeOf(*in)));
+      bytes += in->bytes();
+      if (in->bytes() > kMostInput)
+        throw Error(fmt::format("an input of {} bytes is too long to be recorded", in->bytes()));
       model->code(coder, true, *in++);
-    } while (in != inputs.end() && bytes + sizeOf(*in) <= kPieceBytes);
+    } while (in != inputs.end() && bytes + in->bytes() <= kPieceBytes);
     OwnInput none;
     model->code(coder, false, none);
     coder.finish();

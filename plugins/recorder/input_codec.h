@@ -25,6 +25,8 @@ struct OwnInput {
   std::int64_t number = 0;
   std::string text;
   bool operator==(const OwnInput&) const = default;
+  /// Memory that it takes.
+  std::size_t bytes() const { return sizeof *this + place.size() + text.size(); }
 };
 
 /// Inputs as they came. The simulation's thread only copies them; they are encoded by the one that writes.

@@ -22,9 +22,6 @@ std::string_view nameOf(Input::Kind kind) { return kNames[static_cast<std::size_
 
 constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes: a recorder queues less
 
-std::string tooMany() { return fmt::format("a cycle has more than {} MB of inputs", kMostUnfinished >> 20); }
-std::size_t sizeOf(const OwnInput& in) { return sizeof in + in.place.size() + in.text.size(); }
-
 /// True for what play() passes on; all else is asked for.
 bool isPassed(Input::Kind kind) {
   return kind != Input::Kind::cycle && kind != Input::Kind::time && kind != Input::Kind::decision;
@@ -207,32 +204,28 @@ bool InputPlayer::readChunk() {
 bool InputPlayer::readPieces() {
   if (pieces_.empty()) return false;
   std::vector<OwnInput> read;
-  std::size_t counted = 0, bytes = 0;
+  std::size_t counted = 0, unfinished = unfinished_;
   try {
     for (const mcap::Time time = pieces_.front().first; !pieces_.empty() && pieces_.front().first == time;) {
       inputReader_.read(pieces_.front().second, read);
       pieces_.pop_front();
-      for (; counted < read.size(); ++counted) bytes += sizeOf(read[counted]);
-      if (bytes > kMostUnfinished) throw Error(tooMany());
+      for (; counted < read.size(); ++counted)
+        unfinished = read[counted].kind == Input::Kind::cycle ? 0 : unfinished + read[counted].bytes();
+      if (unfinished > kMostUnfinished)
+        throw Error(fmt::format("a cycle has more than {} MB of inputs", kMostUnfinished >> 20));
     }
-    append(std::move(read));
   } catch (const Error& e) {
     hole_ = true;
     pieces_.clear();
     holes_.push_back(fmt::format("what follows cycle {}: {}", cycle_, e.what()));
     return false;
   }
-  return true;
-}
-
-/// Throws Error if a cycle would have more inputs than the memory of a run takes.
-void InputPlayer::append(std::vector<OwnInput> inputs) {
-  for (OwnInput& in : inputs) {
-    unfinished_ += sizeOf(in);
-    if (in.kind == Input::Kind::cycle) ++cyclesAhead_, unfinished_ = 0;
-    if (unfinished_ > kMostUnfinished) throw Error(tooMany());
+  unfinished_ = unfinished;
+  for (OwnInput& in : read) {
+    cyclesAhead_ += in.kind == Input::Kind::cycle;
     inputs_.push_back(std::move(in));
   }
+  return true;
 }
 
 /// Reads until a whole cycle is known, with its hash and state: until the next one has begun.

@@ -50,7 +50,6 @@ class InputPlayer : public Node, public IInputTape {
   void fill();
   bool readChunk();
   bool readPieces();
-  void append(std::vector<recorder::OwnInput> inputs);
   bool skipHole();
   void goTo(recorder::StateAt at);
   const recorder::OwnInput* next();

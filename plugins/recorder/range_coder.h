@@ -64,7 +64,7 @@ class RangeWriter : private Interval {
     for (int i = count; i-- > 0;) put(0x8000, value >> i & 1);
     return value;
   }
-  /// Ends the bytes with as few as a reader needs, who takes those that are missing for 0.
+  /// Writes the last bytes, as few as possible: a reader takes missing bytes as 0.
   void finish() {
     std::uint32_t last = 0, mask = 0;
     for (int n = 0; n < 4 && last < low_; ++n) {
