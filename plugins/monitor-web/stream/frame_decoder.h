@@ -36,7 +36,7 @@ class ByteReader {
 /// The scene that a stream of frames shows.
 class FrameDecoder {
  public:
-  /// Begins with a scene. `mounts`: of its transforms, as Instant::mounts; `visible`: of each node.
+  /// Begins with a scene. `mounts`: one for each of its transforms; `visible`: of each node.
   void begin(std::vector<Mount> mounts, std::vector<std::uint8_t> visible);
   /// Takes a frame. Throws Error if it is malformed, or if it belongs to another scene or to another frame before.
   void take(std::string_view frame);

@@ -16,6 +16,9 @@ Matrix at(float x, float y, float z, float a = 0, float b = 0, float c = 0) {
   return m;
 }
 
+// Quanta: an axis of the other transform's frame is right to one of them, an axis of the world to the root of three.
+constexpr double kOnAnother = 1.8;
+
 struct Scene {
   std::vector<Matrix> transforms;
   std::vector<std::uint8_t> visible;
@@ -110,7 +113,7 @@ TEST_CASE("A limb that moves with its robot costs nothing, and one that turns at
     pose(at(0.05f * t, -10, 1, t, 7 * t, 0.3f * t), k < 100 ? 0 : t - 100);
     encoder.advance(scene.instant());
     follower.take(encoder.delta());
-    for (std::size_t i = 0; i < 4; ++i) REQUIRE(follower.isNear(i, scene.transforms[i], 2));
+    for (std::size_t i = 0; i < 4; ++i) REQUIRE(follower.isNear(i, scene.transforms[i], kOnAnother));
     if (k < 100) REQUIRE(encoder.delta().size() <= 20 + 2 + 1 + 2 + 7 * 2);
     most = std::max(most, encoder.delta().size());
   }
@@ -119,6 +122,26 @@ TEST_CASE("A limb that moves with its robot costs nothing, and one that turns at
   newcomer.mounts = scene.mounts;
   newcomer.take(encoder.key());
   CHECK(newcomer.quantised == follower.quantised);
+}
+
+TEST_CASE("Errors do not add up along a chain of limbs") {
+  constexpr std::size_t kLimbs = 60;
+  Scene scene{std::vector<Matrix>(kLimbs, Matrix::Identity()), std::vector<std::uint8_t>(kLimbs, 1), {}};
+  for (std::size_t i = 0; i < kLimbs; ++i) scene.mounts.push_back({static_cast<int>(i) - 1, Vec3f(0, 0, 0.5f)});
+  for (const Precision precision : {kFine, kCoarse}) {
+    StreamEncoder encoder(precision);
+    FrameReader reader(kLimbs);
+    reader.mounts = scene.mounts;
+    for (int k = 0; k < 50; ++k) {
+      const auto t = static_cast<float>(k);
+      for (std::size_t i = 1; i < kLimbs; ++i)
+        scene.transforms[i] =
+            scene.transforms[i - 1] * at(0.01f, 0, 0.5f, t, 0.7f * t, 3.f * static_cast<float>(i % 7));
+      encoder.advance(scene.instant());
+      reader.take(k == 0 ? encoder.key() : encoder.delta());
+      for (std::size_t i = 0; i < kLimbs; ++i) REQUIRE(reader.isNear(i, scene.transforms[i], kOnAnother));
+    }
+  }
 }
 
 TEST_CASE("Mounted transforms are decoded as a viewer decodes them, also half a turn from each other") {
@@ -137,7 +160,7 @@ TEST_CASE("Mounted transforms are decoded as a viewer decodes them, also half a 
     reader.take(frame);
     decoder.take(frame);
     for (std::size_t i = 0; i < 3; ++i) {
-      REQUIRE(reader.isNear(i, scene.transforms[i], 4));
+      REQUIRE(reader.isNear(i, scene.transforms[i], kOnAnother));
       REQUIRE(reader.isNear(i, decoder.transform(i), 0.1));
     }
   }

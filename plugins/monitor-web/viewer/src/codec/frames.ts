@@ -27,13 +27,13 @@ export type Decoded =
 
 const held = new Float64Array(3), arm = new Float64Array(3);
 
-/// Writes the product of the quaternion at `a` and (x, y, z, w).
-function multiply(from: Float32Array, a: number, x: number, y: number, z: number, w: number, to: Float32Array, at: number): void {
-  const ax = from[a]!, ay = from[a + 1]!, az = from[a + 2]!, aw = from[a + 3]!;
-  to[at] = aw * x + ax * w + ay * z - az * y;
-  to[at + 1] = aw * y - ax * z + ay * w + az * x;
-  to[at + 2] = aw * z + ax * y - ay * x + az * w;
-  to[at + 3] = aw * w - ax * x - ay * y - az * z;
+/// Writes the product of the quaternion at `a` and (x, y, z, w) to `at`.
+function multiply(q: Float32Array, a: number, x: number, y: number, z: number, w: number, at: number): void {
+  const ax = q[a]!, ay = q[a + 1]!, az = q[a + 2]!, aw = q[a + 3]!;
+  q[at] = aw * x + ax * w + ay * z - az * y;
+  q[at + 1] = aw * y - ax * z + ay * w + az * x;
+  q[at + 2] = aw * z + ax * y - ay * x + az * w;
+  q[at + 3] = aw * w - ax * x - ay * y - az * z;
 }
 
 /// Writes the vector (x, y, z), turned by the quaternion at `a`.
@@ -134,9 +134,9 @@ export class FrameDecoder {
   private place(poses: Poses, metres: number, units: number): void {
     const { steps, transforms } = this, { position, rotation } = poses;
     for (let k = 0, s = 0; k < transforms.length; ++k, s += kPerTransform) {
-      const i = transforms[k]!, node = this.nodes[i]!;
-      if (node.on !== undefined) {
-        this.placeOn(poses, i, transforms[node.on]!, node.pin!, s, metres, units);
+      const i = transforms[k]!;
+      if (this.nodes[i]!.on !== undefined) {
+        this.placeOn(poses, i, s, metres, units);
         continue;
       }
       position[3 * i] = steps[s]! * metres;
@@ -152,13 +152,14 @@ export class FrameDecoder {
     }
   }
 
-  /// Places node i on node j. `s`: where its numbers are.
-  private placeOn(poses: Poses, i: number, j: number, pin: [number, number, number], s: number, metres: number, units: number): void {
+  /// Places node i on another one. `s`: where its numbers are.
+  private placeOn(poses: Poses, i: number, s: number, metres: number, units: number): void {
     const { steps } = this, { position, rotation } = poses;
+    const node = this.nodes[i]!, pin = node.pin!, j = this.transforms[node.on!]!;
     // The rotation from j to i: its vector part is the axis times sin(angle / 2).
     const x = (steps[s + 3]! * units) / 2, y = (steps[s + 4]! * units) / 2, z = (steps[s + 5]! * units) / 2;
     const square = x * x + y * y + z * z, scale = 2 / (1 + square), w = (1 - square) / (1 + square);
-    multiply(rotation, 4 * j, x * scale, y * scale, z * scale, w, rotation, 4 * i);
+    multiply(rotation, 4 * j, x * scale, y * scale, z * scale, w, 4 * i);
     rotate(rotation, 4 * j, steps[s]! * metres, steps[s + 1]! * metres, steps[s + 2]! * metres, held);
     rotate(rotation, 4 * i, pin[0], pin[1], pin[2], arm);
     for (let k = 0; k < 3; ++k) position[3 * i + k] = position[3 * j + k]! + held[k]! - arm[k]!;

@@ -56,7 +56,8 @@ function readNode(from: unknown, before: SceneNode[]): SceneNode | null {
     node.shapes = from.shapes;
   }
   if (node.kind === "transform" && from.on !== undefined) {
-    if (!Number.isInteger(from.on) || (from.on as number) < 0 || !isNumbers(from.pin, 3) || Math.hypot(...(from.pin as number[])) > kMostPin) return null;
+    if (!Number.isInteger(from.on) || (from.on as number) < 0) return null;
+    if (!isNumbers(from.pin, 3) || Math.hypot(...from.pin) > kMostPin) return null;
     node.on = from.on as number;
     node.pin = from.pin as [number, number, number];
   }
