@@ -27,8 +27,8 @@ export function sameNodes(a: SceneNode[], b: SceneNode[]): boolean {
 
 function sameNode(a: SceneNode, b: SceneNode): boolean {
   return (
-    a.kind === b.kind && a.parent === b.parent && a.load === b.load && a.transparent === b.transparent && a.path === b.path && a.file === b.file &&
-    a.on === b.on && sameList(a.pin, b.pin) &&
+    a.kind === b.kind && a.parent === b.parent && a.load === b.load && a.transparent === b.transparent &&
+    a.path === b.path && a.file === b.file && a.on === b.on && sameList(a.pin, b.pin) &&
     sameList(a.scale, b.scale) && sameList(a.materials, b.materials) && sameText(a.looks, b.looks) && sameText(a.colors, b.colors)
   );
 }
