@@ -20,7 +20,7 @@ constexpr std::string_view kNames[] = {"a cycle",   "the wall clock", "a connect
                                        "a leaving", "a request",      "a command",    "a decision"};
 std::string_view nameOf(Input::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
-constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes: a recorder queues less
+constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes; a recorder queues fewer
 
 /// True for what play() passes on; all else is asked for.
 bool isPassed(Input::Kind kind) {

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <fstream>
 #include <random>
-#include <thread>
 
 #include "input_codec.h"
 #include "mcap.h"
@@ -12,6 +11,30 @@
 
 using namespace spark::test;
 using Catch::Contains;
+
+namespace {
+/// Writes a recording anew, with `change(topic, message)` as the data of each message.
+template <class Change>
+void rewrite(const std::string& file, Change change) {
+  using namespace spark;
+  std::string bytes;
+  mcap::Reader from(file);
+  {
+    mcap::Writer to([&bytes](std::string_view more) { bytes += more; }, "test");
+    for (const auto& [number, schema] : from.schemas()) to.schema(schema);
+    for (const auto& [number, channel] : from.channels()) to.channel(channel);
+    to.metadata("spark", from.metadataOf("spark"));
+    for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
+    for (const auto& chunk : from.chunks())
+      from.forEach(chunk, [&](const mcap::Message& m) {
+        to.message(m.channel, m.time, change(from.channels().at(m.channel).topic, m));
+        return true;
+      });
+    to.finish();
+  }
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+}  // namespace
 
 TEST_CASE("A host that was killed leaves a recording that can be simulated up to its last chunk") {
   Recorded match("soccer-sphere.lua", "sphere-team", 2, {"--rate", "max", "--sync", "--duration", "100000"});
@@ -35,7 +58,7 @@ TEST_CASE("A host may be killed at any instant: each file opens, says what is mi
                      "players=2", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--web-port", "0",
                      "--log-level", "error", "--record", file});
     running.line();
-    std::this_thread::sleep_for(std::chrono::microseconds(random() % 1'000'000));
+    waitForCycle(running, static_cast<std::int64_t>(random() % 4000));
     running.signal(SIGKILL);
     CHECK(running.wait() == 128 + SIGKILL);
     const auto [line, code] = verify(file);
@@ -83,25 +106,12 @@ TEST_CASE("A damaged piece of inputs is a hole, up to the next state that can be
   Recorded match("soccer-sphere.lua", "sphere-team", 2,
                  joined(joined(kLockstep, withoutLimits()), {"--duration", "25"}));
   match.end();
-  mcap::Reader from(match.file);
-  std::string bytes;
-  {
-    mcap::Writer to([&bytes](std::string_view more) { bytes += more; }, "test");
-    for (const auto& [number, channel] : from.channels()) to.channel({number, channel.topic, channel.encoding});
-    to.metadata("spark", from.metadataOf("spark"));
-    for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
-    for (const auto& chunk : from.chunks())
-      from.forEach(chunk, [&](const mcap::Message& m) {
-        std::string data(m.data);
-        if (m.channel == from.channelOf(recorder::kInputs) && m.time == 9'800'000'000) data = "\x01";
-        if (stateIsDamaged && m.channel == from.channelOf(recorder::kStates) && m.time == 10'000'000'000)
-          data.resize(100);
-        to.message(m.channel, m.time, data);
-        return true;
-      });
-    to.finish();
-  }
-  std::ofstream(match.file, std::ios::binary) << bytes;
+  rewrite(match.file, [&](std::string_view topic, const mcap::Message& m) {
+    std::string data(m.data);
+    if (topic == recorder::kInputs && m.time == 9'800'000'000) data = "\x01";
+    if (stateIsDamaged && topic == recorder::kStates && m.time == 10'000'000'000) data.resize(100);
+    return data;
+  });
   const auto [line, code] = verify(match.file);
   INFO(line.dump());
   CHECK(code == 0);
@@ -121,42 +131,25 @@ TEST_CASE("One changed byte of an input is found: the cycle, and by the next sta
   Recorded match("soccer-sphere.lua", "sphere-team", 2,
                  joined(joined(kLockstep, withoutLimits()), {"--duration", "15"}));
   match.end();
-  // The same file, but for one digit of an agent's message.
-  mcap::Reader from(match.file);
-  std::string bytes;
+  // The same file except for one digit of an agent's message.
   std::int64_t changedAt = 0;
-  {
-    mcap::Writer to([&bytes](std::string_view more) { bytes += more; }, "test");
-    for (const auto& [number, schema] : from.schemas()) to.schema(schema);
-    for (const auto& [number, channel] : from.channels()) to.channel(channel);
-    to.metadata("spark", from.metadataOf("spark"));
-    for (const auto& a : from.attachments()) to.attachment(a.time, a.name, a.mediaType, from.read(a));
-    recorder::InputReader reader;
-    recorder::InputWriter writer;
-    for (const auto& chunk : from.chunks())
-      from.forEach(chunk, [&](const mcap::Message& m) {
-        std::string data(m.data);
-        if (m.channel == from.channelOf(recorder::kInputs)) {
-          std::vector<recorder::OwnInput> inputs;
-          reader.read(m.data, inputs);
-          for (auto i = inputs.begin(); i != inputs.end() && m.time > 6'000'000'000 && changedAt == 0; ++i) {
-            const std::size_t drive = i->kind == Input::Kind::message ? i->text.find("(drive ") : std::string::npos;
-            if (drive == std::string::npos) continue;
-            char& digit = i->text[i->text.find_first_of("123456789", drive)];
-            digit = digit == '1' ? '2' : '1';
-            changedAt =
-                std::find_if(i, inputs.end(), [](const auto& in) { return in.kind == Input::Kind::cycle; })->number;
-          }
-          writer.restart();
-          data = writer.write(inputs).at(0);
-        }
-        to.message(m.channel, m.time, data);
-        return true;
-      });
-    to.finish();
-  }
+  recorder::InputReader reader;
+  recorder::InputWriter writer;
+  rewrite(match.file, [&](std::string_view topic, const mcap::Message& m) {
+    if (topic != recorder::kInputs) return std::string(m.data);
+    std::vector<recorder::OwnInput> inputs;
+    reader.read(m.data, inputs);
+    for (auto i = inputs.begin(); i != inputs.end() && m.time > 6'000'000'000 && changedAt == 0; ++i) {
+      const std::size_t drive = i->kind == Input::Kind::message ? i->text.find("(drive ") : std::string::npos;
+      if (drive == std::string::npos) continue;
+      char& digit = i->text[i->text.find_first_of("123456789", drive)];
+      digit = digit == '1' ? '2' : '1';
+      changedAt = std::find_if(i, inputs.end(), [](const auto& in) { return in.kind == Input::Kind::cycle; })->number;
+    }
+    writer.restart();
+    return writer.write(inputs).at(0);
+  });
   REQUIRE(changedAt > 300);
-  std::ofstream(match.file, std::ios::binary) << bytes;
   const auto [line, code] = verify(match.file);
   INFO(line.dump());
   CHECK(code == 1);

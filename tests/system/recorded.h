@@ -15,6 +15,15 @@ namespace spark::test {
 
 using Json = nlohmann::json;
 
+/// Waits until a host has simulated at least `cycle` cycles.
+inline void waitForCycle(const Process& host, std::int64_t cycle) {
+  for (std::int64_t now = 0; now < cycle;) {
+    const Finished f = runToEnd(joined(sparkctl(host.pid()), {"get", "/sys/server/simulation.cycle"}));
+    REQUIRE(f.code == 0);
+    now = std::stoll(f.out.substr(f.out.find("= ") + 2));
+  }
+}
+
 /// A host that records, with two teams.
 struct Recorded {
   TemporaryFolder folder;
@@ -32,14 +41,7 @@ struct Recorded {
       *process = std::make_unique<Process>(std::vector<std::string>{
           program(team), "--team", name, "--port", ports["agentPort"].dump(), "--players", std::to_string(players)});
   }
-  /// Waits until the host has simulated that many cycles.
-  void until(std::int64_t cycles) {
-    for (std::int64_t cycle = 0; cycle < cycles;) {
-      const Finished f = runToEnd(joined(sparkctl(host->pid()), {"get", "/sys/server/simulation.cycle"}));
-      REQUIRE(f.code == 0);
-      cycle = std::stoll(f.out.substr(f.out.find("= ") + 2));
-    }
-  }
+  void until(std::int64_t cycle) { waitForCycle(*host, cycle); }
   Json end() {
     Json result = Json::parse(host->line());
     REQUIRE(host->wait() == 0);

@@ -9,14 +9,14 @@ using namespace spark::test;
 using Catch::Contains;
 
 namespace {
-/// sparkreplay that plays a file and stands still.
+/// sparkreplay, which shows a file to monitors.
 struct Replay {
   std::unique_ptr<Process> process;
   unsigned short port = 0;
   explicit Replay(std::vector<std::string> command) : process(std::make_unique<Process>(std::move(command))) {
     port = static_cast<unsigned short>(Json::parse(process->line())["monitorPort"].get<int>());
   }
-  /// What a monitor gets that connects when it shows a time: words and numbers. Another time than before.
+  /// Seeks, and returns the words and numbers that a new monitor receives. `seconds` must differ from the last call's.
   std::vector<std::string> at(double seconds) {
     const Finished set = runToEnd(
         joined(sparkctl(process->pid()), {"set", "/sys/server/monitor/player.time", fmt::format("{}", seconds)}));
@@ -42,7 +42,7 @@ struct Replay {
   std::string shown = "0";  ///< time in the game that it showed last
 };
 
-/// The first word that differs; numbers may by a few quanta of the recording.
+/// Describes the first difference, or "". Numbers may differ by a few quanta of the recording.
 std::string firstDifference(const std::vector<std::string>& a, const std::vector<std::string>& b) {
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
     if (a[i] == b[i]) continue;
@@ -93,7 +93,7 @@ TEST_CASE("A recording plays forwards and backwards, and begins where it is told
     }
     return out;
   };
-  // So slowly that a busy machine does not miss all of it.
+  // Slow, so that a busy machine does not miss all of it.
   const auto forwards = timesFrom({"--from", "2", "--speed", "0.1"}), backwards = timesFrom({"--speed", "-0.1"});
   CHECK(std::is_sorted(forwards.begin(), forwards.end()));
   CHECK(forwards.front() >= 1.9);

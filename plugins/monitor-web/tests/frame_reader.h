@@ -60,7 +60,7 @@ class FrameReader {
     out.position = other.position + other.rotation * place - out.rotation * mount.pin.cast<double>();
     return out;
   }
-  /// True if transform `i` equals the matrix to within so many quanta.
+  /// True if transform `i` equals the matrix to within `quanta` quanta.
   bool isNear(std::size_t i, const Matrix& m, double quanta = 1) const {
     const Pose pose = poseOf(i);
     for (int row = 0; row < 3; ++row) {
