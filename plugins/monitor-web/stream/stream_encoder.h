@@ -40,7 +40,9 @@ struct Instant {
   std::span<const Matrix> transforms;      ///< local matrices of the transform nodes, in order
   std::span<const std::uint8_t> visible;   ///< of all nodes, in order
   std::span<const std::uint32_t> toggled;  ///< nodes whose visibility ever changed in this shape; only grows
-  std::span<const Mount> mounts;           ///< of each transform, the same ones in a shape; empty: there are none
+  /// One for each transform, the same ones in a shape, each on an earlier transform. Another number of them counts as
+  /// none, and one that refers to a later transform is ignored.
+  std::span<const Mount> mounts;
 };
 
 /// A transform in quanta: position x y z and quaternion x y z w. With a mount: the place of the pin in the frame of the
