@@ -3,14 +3,16 @@
 #include <algorithm>
 
 #include "gamecontrol/scene_effector.h"
+#include "spark/kernel.h"
 
 namespace spark::gamecontrol {
 
 std::size_t EffectorTable::rebuild(AgentAspect& root) {
   clear();
+  structure_ = &root.kernel().structureVersion();
   std::vector<Effector*> effectors;
   root.collect(effectors);
-  for (Effector* e : effectors) entries_.push_back({.predicate = e->predicate(), .effector = e, .object = e});
+  for (Effector* e : effectors) entries_.push_back({.predicate = e->predicate(), .effector = e});
 
   // Sort by predicate; of equal ones keep the last in tree order.
   std::stable_sort(entries_.begin(), entries_.end(),
@@ -28,6 +30,7 @@ std::size_t EffectorTable::rebuild(AgentAspect& root) {
     modified_.push_back(std::make_unique<Modified>(Modified{e.effector, std::move(modifiers), {}}));
     e.modified = modified_.back().get();
   }
+  dropRemoved();
   return effectors.size();
 }
 
@@ -35,6 +38,11 @@ void EffectorTable::clear() {
   entries_.clear();
   modified_.clear();
   syncPredicate_.clear();
+}
+
+void EffectorTable::dropRemoved() {
+  for (Entry& e : entries_) e.called = e.effector && e.effector->isLinked() ? e.effector.get() : nullptr;
+  calledAt_ = *structure_;
 }
 
 std::vector<std::string> EffectorTable::predicates() const {

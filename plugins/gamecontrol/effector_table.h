@@ -3,6 +3,7 @@
 /// The effectors of one agent by predicate.
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -44,7 +45,7 @@ class EffectorTable {
   /// True while a SceneEffector waits to load the robot, or has loaded it in the last prepare phase after a wait.
   bool loading() const;
 
-  /// Looks up the effectors for the actions of one cycle, in order.
+  /// Looks up the effectors for the actions of one cycle, in order. Actions may change the tree.
   class Lookup {
    public:
     explicit Lookup(EffectorTable& table) : table_(table), guess_(&table.first_) {
@@ -53,6 +54,8 @@ class EffectorTable {
     /// The effector for `predicate`.
     Target find(std::string_view predicate) {
       auto& entries = table_.entries_;
+      if (entries.empty()) return {};
+      if (table_.calledAt_ != *table_.structure_) table_.dropRemoved();
       if (*guess_ >= entries.size() || entries[*guess_].predicate != predicate) {
         const std::size_t index = table_.indexOf(predicate);
         if (index == entries.size()) return {};
@@ -62,9 +65,9 @@ class EffectorTable {
       guess_ = &entry.next;
       // The solver has displaced effectors, and the joints above them, from the CPU caches.
       const Entry& next = entries[entry.next];
-      prefetch(entries[next.next].object, kEffectorBytes);
-      if (const Effector* e = next.effector.get()) prefetch(e->parent(), kParentBytes);
-      return {entry.effector.get(), entry.modified};
+      prefetch(entries[next.next].called, kEffectorBytes);
+      if (const Effector* e = next.called) prefetch(e->parent(), kParentBytes);
+      return {entry.called, entry.modified};
     }
 
    private:
@@ -77,16 +80,21 @@ class EffectorTable {
   struct Entry {
     std::string predicate;
     Ref<Effector> effector;
-    std::size_t next = 0;              ///< index of the entry that was used after this one the last time
-    Modified* modified = nullptr;      ///< of modified_
-    const Effector* object = nullptr;  ///< only to be prefetched: it may be gone
+    /// The same, nullptr if it was removed; valid while the tree is that of `calledAt_`. A Ref costs a cache line.
+    Effector* called = nullptr;
+    std::size_t next = 0;          ///< index of the entry that was used after this one the last time
+    Modified* modified = nullptr;  ///< of modified_
   };
+  /// Empties the pointers to effectors that are no longer in the tree.
+  void dropRemoved();
   /// Binary search; the number of entries if there is none.
   std::size_t indexOf(std::string_view predicate) const;
 
   std::vector<Entry> entries_;  ///< sorted by predicate
   std::vector<std::unique_ptr<Modified>> modified_;
-  std::size_t first_ = 0;  ///< index of the entry that was used first the last time
+  std::size_t first_ = 0;                     ///< index of the entry that was used first the last time
+  const std::uint64_t* structure_ = nullptr;  ///< Kernel::structureVersion(); nullptr: there are no entries
+  std::uint64_t calledAt_ = 0;                ///< that of the pointers in the entries
   std::string syncPredicate_;
 };
 

@@ -29,6 +29,19 @@ inline Quaternion relativeRotation(const engine::DynamicState* a, const engine::
   return relativeTo(a, b ? b->quaternion : Quaternion{1, 0, 0, 0});
 }
 
+/// The angle of a hinge within one turn, with its rotation and axis in the frame of the first body [rad].
+inline double hingeAngleOf(const engine::DynamicState& a, const engine::DynamicState* b, const Quaternion& rotation,
+                           const Vec3& axis) {
+  return hingeAngle(b ? timesConjugate(conjugateTimes(a.quaternion, b->quaternion), rotation)
+                      : conjugateTimesConjugate(a.quaternion, rotation),
+                    axis);
+}
+
+/// The coordinate of an axis from its angle within one turn, with the sign by which it is seen [rad].
+inline double viewed(double sign, double angle, std::int32_t turns) {
+  return sign * (turns == 0 ? angle : angle + 2 * kPi * turns);
+}
+
 inline bool attached(const engine::Joint& j) { return j.a != engine::kNone; }
 
 }  // namespace spark::physics

@@ -66,18 +66,21 @@ Vec3 JointKinematics::axis(Index joint, int axis) const {
 
 // ---- angles within one turn ----
 
-double JointKinematics::hingeAngle(Index joint) const {
+bool JointKinematics::isCached(Index joint) const {
+  return std::atomic_ref(cached_[joint].at).load(std::memory_order_acquire) == world_.poses;
+}
+
+JointKinematics::HingeAngle JointKinematics::hingeAngle(Index joint) const {
   CachedAngle& cache = cached_[joint];
-  const std::atomic_ref<double> angle(cache.angle);
-  const std::atomic_ref<std::uint64_t> at(cache.at);
-  if (at.load(std::memory_order_acquire) == world_.poses) return angle.load(std::memory_order_relaxed);
+  const std::atomic_ref ofPoses(cache.angle.ofPoses), continuous(cache.angle.continuous);
+  if (isCached(joint)) return {ofPoses.load(std::memory_order_relaxed), continuous.load(std::memory_order_relaxed)};
   const Joint& j = model().joints[joint];
-  const DynamicState *a = world_.stateAt(j.a), *b = world_.stateAt(j.b);
-  const Quaternion relative = b ? timesConjugate(conjugateTimes(a->quaternion, b->quaternion), j.inA.rotation)
-                                : conjugateTimesConjugate(a->quaternion, j.inA.rotation);
-  const double found = physics::hingeAngle(relative, j.inA.axis[0]);
-  angle.store(found, std::memory_order_relaxed);
-  at.store(world_.poses, std::memory_order_release);
+  const double raw = hingeAngleOf(*world_.stateAt(j.a), world_.stateAt(j.b), j.inA.rotation, j.inA.axis[0]);
+  const double sign = viewOf(j, 0).sign;
+  const HingeAngle found{sign * raw, viewed(sign, raw, turnsNow(joint, 0, raw))};
+  ofPoses.store(found.ofPoses, std::memory_order_relaxed);
+  continuous.store(found.continuous, std::memory_order_relaxed);
+  std::atomic_ref(cache.at).store(world_.poses, std::memory_order_release);
   return found;
 }
 
@@ -126,7 +129,7 @@ double JointKinematics::rawAngle(Index joint, int axis) const {
   const Joint& j = model().joints[joint];
   switch (j.type) {
     case JointType::hinge:
-      return hingeAngle(joint);
+      return viewOf(j, axis).sign * hingeAngle(joint).ofPoses;
     case JointType::universal:
       return universalAngle(j, axis);
     case JointType::hinge2:

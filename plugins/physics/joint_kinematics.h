@@ -52,16 +52,26 @@ class JointKinematics {
   void renumber(const std::vector<engine::Index>& now);
 
  private:
-  /// The angle of a hinge [rad], because effectors and sensors read the same number. It is valid while `at` is
-  /// WorldData::poses. Sensors read it in several threads.
+  /// The angle of a hinge [rad].
+  struct HingeAngle {
+    double ofPoses = 0;     ///< as angleOfPoses() has it
+    double continuous = 0;  ///< as angle() has it
+  };
+  /// That angle, because effectors and sensors read the same number. It is valid while `at` is WorldData::poses.
+  /// Sensors read and write it in several threads.
   struct CachedAngle {
-    double angle = 0;
+    HingeAngle angle;
     std::uint64_t at = 0;
   };
-  /// A joint that counts turns, and its bodies.
+  /// A joint that counts turns, and what its angle depends on: the joints of a model are too large to be read in each
+  /// step. Versions are those of the bodies' states when turns were counted last, 0 before and of the world.
   struct Turning {
     engine::Index joint, a, b;
-    int axes;
+    std::uint32_t versionA = 0, versionB = 0;
+    int axes = 0;
+    double hinge = 0;  ///< of a hinge: the sign of its AxisView; 0: another joint
+    Quaternion rotation;
+    Vec3 axis;  ///< as the rotation, of the hinge's frame in a
   };
   /// The axis and the sign by which the angle of an axis is that of a stop; see Joint::reversed.
   struct AxisView {
@@ -81,7 +91,9 @@ class JointKinematics {
   void listTurning();
   std::array<Vec3, 3> eulerAxes(const engine::Joint& joint) const;
   double eulerAngle(const engine::Joint& joint, int axis) const;
-  double hingeAngle(engine::Index joint) const;
+  /// True while the angle of a hinge is known; never of another joint.
+  bool isCached(engine::Index joint) const;
+  HingeAngle hingeAngle(engine::Index joint) const;
   double universalAngle(const engine::Joint& joint, int axis) const;
   double sliderPosition(const engine::Joint& joint) const;
   double hinge2Angle(const engine::Joint& joint, int axis) const;

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "joint_frames.h"
 #include "joint_kinematics.h"
 
@@ -15,6 +17,7 @@
 namespace spark::physics {
 
 using engine::axesOf;
+using engine::DynamicState;
 using engine::Index;
 using engine::Joint;
 using engine::JointCoordinates;
@@ -61,6 +64,7 @@ void JointKinematics::restart(Index joint) {
   JointCoordinates& c = state().coordinates[joint];
   state().turned -= isTurned(c);
   c = {};
+  cached_[joint].at = 0;
   turningAt_ = 0;
 }
 
@@ -76,7 +80,13 @@ void JointKinematics::listTurning() {
   for (Index i = 0; i < model().joints.size(); ++i) {
     state().turned += isTurned(state().coordinates[i]);
     if (const Joint& j = model().joints[i]; attached(j) && turningAxes(j) > 0)
-      turning_.push_back({i, j.a, j.b, turningAxes(j)});
+      turning_.push_back({.joint = i,
+                          .a = j.a,
+                          .b = j.b,
+                          .axes = turningAxes(j),
+                          .hinge = j.type == JointType::hinge ? viewOf(j, 0).sign : 0,
+                          .rotation = j.inA.rotation,
+                          .axis = j.inA.axis[0]});
   }
   turningAt_ = model().structure;
   countedAt_ = 0;
@@ -88,15 +98,23 @@ void JointKinematics::begin() {
 }
 
 void JointKinematics::countTurns() {
-  const auto moves = [&](Index body) { return body != kNone && state().bodies[body].awake; };
-  for (const Turning& t : turning_) {
-    if (!moves(t.a) && !moves(t.b)) continue;
+  for (Turning& t : turning_) {
+    const DynamicState &a = state().bodies[t.a], *b = world_.stateAt(t.b);
+    const std::uint32_t versionA = std::exchange(t.versionA, a.version),
+                        versionB = std::exchange(t.versionB, b ? b->version : 0);
+    CachedAngle& cache = cached_[t.joint];
+    if (!a.awake && !(b && b->awake)) {
+      // Nothing moved: what was known of it is still true.
+      if (versionA == t.versionA && versionB == t.versionB && cache.at == countedAt_) cache.at = world_.poses;
+      continue;
+    }
     JointCoordinates& c = state().coordinates[t.joint];
     for (int axis = 0; axis < t.axes; ++axis) {
-      const double now = rawAngle(t.joint, axis);
+      const double now = t.hinge != 0 ? hingeAngleOf(a, b, t.rotation, t.axis) : rawAngle(t.joint, axis);
       const std::int32_t turns = turnsAfter(c.angle[axis], c.turns[axis], now);
       c.angle[axis] = now;
       if (turns != c.turns[axis]) setTurns(c, axis, turns);
+      if (t.hinge != 0) cache = {{t.hinge * now, viewed(t.hinge, now, turns)}, world_.poses};
     }
   }
   countedAt_ = world_.poses;
@@ -115,17 +133,19 @@ JointKinematics::AxisView JointKinematics::viewOf(const Joint& j, int axis) cons
 }
 
 double JointKinematics::angle(Index joint, int axis) const {
+  if (axis == 0 && isCached(joint)) return hingeAngle(joint).continuous;
   const Joint& j = model().joints[joint];
   if (axis < 0 || axis >= axesOf(j.type) || !attached(j)) return 0;
+  if (j.type == JointType::hinge) return hingeAngle(joint).continuous;
   if (j.type == JointType::slider) return sliderPosition(j);
   if (axis >= turningAxes(j)) return axis < j.motor.axes ? j.motor.angle[axis] : 0;
   const AxisView view = viewOf(j, axis);
   const double raw = rawAngle(joint, view.axis);
-  const std::int32_t turns = turnsNow(joint, view.axis, raw);
-  return view.sign * (turns == 0 ? raw : raw + 2 * kPi * turns);
+  return viewed(view.sign, raw, turnsNow(joint, view.axis, raw));
 }
 
 double JointKinematics::angleOfPoses(Index joint, int axis) const {
+  if (axis == 0 && isCached(joint)) return hingeAngle(joint).ofPoses;
   const Joint& j = model().joints[joint];
   if (axis < 0 || axis >= turningAxes(j) || !attached(j)) return angle(joint, axis);
   const AxisView view = viewOf(j, axis);
@@ -145,6 +165,7 @@ void JointKinematics::load(Index joint, int axis, double angle) {
   JointCoordinates& c = state().coordinates[joint];
   setTurns(c, axis, static_cast<std::int32_t>(std::round(angle / (2 * kPi))));
   c.angle[axis] = angle - 2 * kPi * c.turns[axis];
+  cached_[joint].at = 0;
 }
 
 }  // namespace spark::physics

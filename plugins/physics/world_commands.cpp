@@ -61,7 +61,7 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
 void WorldModel::passMotor(Index joint, int axis) {
   engine::Motor& passed = state_.motors[joint][axis];
   passed = motors_[joint][axis];
-  if (passed.maxForce > 0) return;  // in most calls; the joint's own numbers are far away
+  if (passed.maxForce > 0) return;
   if (const double friction = model_.joints[joint].axes[axis].dryFriction; friction > 0) passed = {0, friction};
 }
 

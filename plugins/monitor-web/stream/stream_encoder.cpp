@@ -22,7 +22,9 @@ constexpr float kMaxQuantised = 1 << 30;
 std::int32_t quantum(float exact, std::int32_t before) {
   if (!std::isfinite(exact)) return before;
   if (std::abs(exact - static_cast<float>(before)) <= kHysteresis) return before;
-  return static_cast<std::int32_t>(std::lround(std::clamp(exact, -kMaxQuantised, kMaxQuantised)));
+  // As std::lround(), which is a call: the sum is exact.
+  const double most = std::clamp(exact, -kMaxQuantised, kMaxQuantised);
+  return static_cast<std::int32_t>(most + (most < 0 ? -0.5 : 0.5));
 }
 
 /// The rotation of a matrix. Tolerates scaled and sheared matrices; the identity if there is none.
@@ -30,6 +32,35 @@ Eigen::Quaternionf rotationOf(const Matrix& m) {
   const Eigen::Matrix3f r = m.block<3, 3>(0, 0);
   const Eigen::Quaternionf q = Eigen::Quaternionf(r).normalized();
   return q.coeffs().allFinite() && q.squaredNorm() > 0.5f ? q : Eigen::Quaternionf::Identity();
+}
+
+Vec3f firstThree(const Quantised& value) {
+  return {static_cast<float>(value[0]), static_cast<float>(value[1]), static_cast<float>(value[2])};
+}
+
+Matrix matrixOf(const Eigen::Matrix3f& rotation, const Vec3f& position) {
+  Matrix out = Matrix::Identity();
+  out.block<3, 3>(0, 0) = rotation;
+  out.block<3, 1>(0, 3) = position;
+  return out;
+}
+
+/// The rotation of a transform on another one.
+Eigen::Matrix3f rotationOn(const Matrix& other, const Quantised& value, Precision precision) {
+  const Vec3f turn(static_cast<float>(value[3]), static_cast<float>(value[4]), static_cast<float>(value[5]));
+  const Vec3f half = turn * (0.5f / precision.perUnit());  // tan(angle / 4)
+  const float s = half.squaredNorm();
+  Eigen::Quaternionf q;
+  q.w() = (1 - s) / (1 + s);
+  q.vec() = half * (2 / (1 + s));
+  return other.block<3, 3>(0, 0) * q.toRotationMatrix();
+}
+
+/// Its position, with that rotation.
+Vec3f positionOn(const Matrix& other, const Quantised& value, const Mount& mount, const Eigen::Matrix3f& rotation,
+                 Precision precision) {
+  const Vec3f pin = firstThree(value) * (1 / precision.perMetre());
+  return positionOf(other) + other.block<3, 3>(0, 0) * pin - rotation * mount.pin;
 }
 }  // namespace
 
@@ -43,29 +74,19 @@ void putSigned(std::string& out, std::int64_t value) {
 }
 
 Matrix placeOf(const Quantised& value, const Mount& mount, const Matrix& other, Precision precision) {
-  const float metres = std::ldexp(1.f, -precision.position), units = std::ldexp(1.f, -precision.rotation);
-  const auto number = [&value](std::size_t k) { return static_cast<float>(value[k]); };
-  Vec3f position = Vec3f(number(0), number(1), number(2)) * metres;
-  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();
   if (mount.on >= 0) {
-    const Vec3f half = Vec3f(number(3), number(4), number(5)) * (units / 2);  // tan(angle / 4)
-    const float s = half.squaredNorm();
-    Eigen::Quaternionf q;
-    q.w() = (1 - s) / (1 + s);
-    q.vec() = half * (2 / (1 + s));
-    rotation = other.block<3, 3>(0, 0) * q.toRotationMatrix();
-    position = positionOf(other) + other.block<3, 3>(0, 0) * position - rotation * mount.pin;
-  } else if (const Eigen::Quaternionf q(number(6), number(3), number(4), number(5)); q.squaredNorm() > 0) {
-    rotation = q.normalized().toRotationMatrix();
+    const Eigen::Matrix3f rotation = rotationOn(other, value, precision);
+    return matrixOf(rotation, positionOn(other, value, mount, rotation, precision));
   }
-  Matrix out = Matrix::Identity();
-  out.block<3, 3>(0, 0) = rotation;
-  out.block<3, 1>(0, 3) = position;
-  return out;
+  const Eigen::Quaternionf q(static_cast<float>(value[6]), static_cast<float>(value[3]), static_cast<float>(value[4]),
+                             static_cast<float>(value[5]));
+  const bool turned = q.squaredNorm() > 0;
+  return matrixOf(turned ? q.normalized().toRotationMatrix() : Eigen::Matrix3f(Eigen::Matrix3f::Identity()),
+                  firstThree(value) * (1 / precision.perMetre()));
 }
 
 Quantised StreamEncoder::quantise(const Matrix& m, const Quantised& before) const {
-  const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
+  const float perMetre = precision_.perMetre(), perUnit = precision_.perUnit();
   Quantised out{};
   for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(positionOf(m)[k] * perMetre, before[k]);
   const Eigen::Vector4f q = rotationOf(m).coeffs();
@@ -77,17 +98,18 @@ Quantised StreamEncoder::quantise(const Matrix& m, const Quantised& before) cons
 }
 
 /// Relative to where viewers have the other one, so that errors do not add up.
-Quantised StreamEncoder::quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m,
-                                    const Quantised& before) const {
-  const float perMetre = std::ldexp(1.f, precision_.position), perUnit = std::ldexp(1.f, precision_.rotation);
+Quantised StreamEncoder::quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m, const Quantised& before,
+                                    Matrix& place) const {
+  const float perMetre = precision_.perMetre(), perUnit = precision_.perUnit();
   const Eigen::Matrix3f back = other.block<3, 3>(0, 0).transpose();
   Quantised out{};
   const Eigen::Quaternionf q(Eigen::Matrix3f(back * rotationOf(m).toRotationMatrix()));
   const Vec3f turn = q.vec() * ((q.w() < 0 ? -2 : 2) * perUnit / (1 + std::abs(q.w())));
   for (std::size_t k = 0; k < 3; ++k) out[3 + k] = quantum(turn[k], before[3 + k]);
-  const Matrix turned = placeOf(out, mount, other, precision_);  // its pin where the other one is
-  const Vec3f pin = back * (positionOf(m) - positionOf(turned));
+  const Eigen::Matrix3f rotation = rotationOn(other, out, precision_);
+  const Vec3f pin = back * (positionOf(m) - (positionOf(other) - rotation * mount.pin));
   for (std::size_t k = 0; k < 3; ++k) out[k] = quantum(pin[k] * perMetre, before[k]);
+  place = matrixOf(rotation, positionOn(other, out, mount, rotation, precision_));
   return out;
 }
 
@@ -104,11 +126,13 @@ void StreamEncoder::advance(const Instant& instant) {
   places_.resize(instant.mounts.size() == size ? size : 0);
   for (std::size_t i = 0; i < size; ++i) {
     const Mount mount = places_.empty() || instant.mounts[i].on >= static_cast<int>(i) ? Mount{} : instant.mounts[i];
-    const Matrix& other =
-        places_.empty() ? instant.transforms[i] : places_[static_cast<std::size_t>(std::max(mount.on, 0))];
-    now_[i] = mount.on < 0 ? quantise(instant.transforms[i], before_[i])
-                           : quantiseOn(other, mount, instant.transforms[i], before_[i]);
-    if (!places_.empty()) places_[i] = placeOf(now_[i], mount, other, precision_);
+    if (mount.on >= 0) {
+      const Matrix& other = places_[static_cast<std::size_t>(mount.on)];
+      now_[i] = quantiseOn(other, mount, instant.transforms[i], before_[i], places_[i]);
+    } else {
+      now_[i] = quantise(instant.transforms[i], before_[i]);
+      if (!places_.empty()) places_[i] = placeOf(now_[i], mount, Matrix::Identity(), precision_);
+    }
   }
   toggled_.assign(instant.toggled.begin(), instant.toggled.end());
   toggledNow_.clear();

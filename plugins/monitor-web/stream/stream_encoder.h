@@ -18,7 +18,9 @@ enum class MessageKind : std::uint8_t { key = 1, delta = 2, piece = 3, scene = 4
 
 /// Quantisation of a stream: a quantum is 2^-bits, in metres for positions and without unit for quaternions.
 struct Precision {
-  int position = 0, rotation = 0;
+  int position = 0, rotation = 0;  ///< bits, 0..30
+  float perMetre() const { return static_cast<float>(1 << position); }
+  float perUnit() const { return static_cast<float>(1 << rotation); }
 };
 inline constexpr Precision kFine{10, 10};  ///< 1 mm, about 0.1 degrees
 inline constexpr Precision kCoarse{7, 7};  ///< 8 mm, about 0.9 degrees
@@ -73,7 +75,9 @@ class StreamEncoder {
 
  private:
   Quantised quantise(const Matrix& m, const Quantised& before) const;
-  Quantised quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m, const Quantised& before) const;
+  /// With a mount; writes the matrix that viewers get, too.
+  Quantised quantiseOn(const Matrix& other, const Mount& mount, const Matrix& m, const Quantised& before,
+                       Matrix& place) const;
   void begin(std::string& out, MessageKind kind) const;
   void writeTransforms(std::string& out, const std::vector<Quantised>& before) const;
   void writeVisibility(std::string& out, const std::vector<std::uint32_t>& nodes) const;
