@@ -1,3 +1,5 @@
+#include <Eigen/Geometry>
+
 #include "engine_fixture.h"
 
 using namespace spark;
@@ -61,6 +63,58 @@ TEST_CASE("a hinge rotates only about its axis; its angle and rate are of the fi
   CHECK(std::abs(two.world.state(two.child).angularVelocity.x()) < 1e-3);
   CHECK(two.world.at(j).angle(0) == Approx(0.5).margin(0.02));
   CHECK(two.world.at(j).angleRate(0) == Approx(1).margin(0.02));
+}
+
+TEST_CASE("a hinge's angle follows its bodies, its axis and its turns, asleep and awake, with either order of bodies") {
+  for (const bool asleep : {true, false})
+    for (const bool swapped : {false, true}) {
+      INFO((asleep ? "asleep" : "awake") << (swapped ? ", swapped" : ""));
+      Two two;
+      two.world.setAngularVelocity(two.body({9, 0, 0}), {0, 0, 1});  // so that there is something to be stepped
+      const JointHandle first = two.world.createJoint(JointType::hinge), j = two.world.createJoint(JointType::hinge);
+      swapped ? two.world.attach(j, BodyHandle::none, two.child) : two.world.attach(j, two.child, two.parent);
+      two.world.setAxis(j, 0, {0, 0, 1});
+      const auto turn = [&](double yaw) {
+        two.world.setRotation(two.child, Eigen::AngleAxisd(yaw, Vec3::UnitZ()).toRotationMatrix());
+      };
+      const auto expect = [&](double yaw, double turns) {
+        const double sign = swapped ? -1 : 1;
+        for (int again = 0; again < 2; ++again) {
+          CHECK(two.world.at(j).angleOfPoses(0) == Approx(sign * yaw).margin(1e-9));
+          CHECK(two.world.at(j).angle(0) == Approx(sign * (yaw + 2 * kPi * turns)).margin(1e-9));
+          CHECK(two.world.at(j).coordinate(0) == Approx(yaw + 2 * kPi * turns).margin(1e-9));
+        }
+      };
+      two.world.setEnabled(two.child, !asleep);
+      two.world.setEnabled(two.parent, !asleep);
+      two.run(2);
+      expect(0, 0);
+      turn(0.5);
+      expect(0.5, 0);
+      two.run(2);
+      expect(0.5, 0);
+      turn(0.25);  // nobody reads it before the step
+      two.run(2);
+      expect(0.25, 0);
+      two.world.loadCoordinate(j, 0, 0.25 + 2 * kPi);
+      expect(0.25, 1);
+      two.run(2);
+      expect(0.25, 1);
+      two.world.destroyJoint(first);  // the hinge's index changes
+      two.run(2);
+      expect(0.25, 1);
+      two.world.setAxis(j, 0, {0, 0, 1});
+      expect(0, 0);
+      two.run(2);
+      expect(0, 0);
+      turn(-0.75);
+      two.run(1);
+      expect(-1, 0);
+      CHECK(two.world.enabled(two.child) == !asleep);
+      two.world.attach(j, BodyHandle::none, BodyHandle::none);
+      two.run(1);
+      CHECK(two.world.at(j).angle(0) == 0);
+    }
 }
 
 TEST_CASE("a hinge's motor drives it to its stop but not beyond") {
