@@ -49,9 +49,9 @@ struct GeomData {
   void* owner = nullptr;                ///< as in the model
   bool collides = true;
   bool jointed = false;  ///< its body has joints
+  bool centred = false;  ///< `offset` is the identity
   /// Pose of ODE's shape in the frame of the body, or in the world.
   Pose offset;
-  bool centred = false;  ///< `offset` is the identity
   engine::ShapeDescription shape;
   SharedShape shared;  ///< ODE refers to it
 };

@@ -64,10 +64,11 @@ class JointKinematics {
     std::uint64_t at = 0;
   };
   /// A joint that counts turns, and what its angle depends on: the joints of a model are too large to be read in each
-  /// step. Versions are those of the bodies' states when turns were counted last, 0 before and of the world.
+  /// step.
   struct Turning {
     engine::Index joint, a, b;
-    std::uint32_t versionA = 0, versionB = 0;
+    std::uint32_t versionA = 0, versionB = 0;  ///< of the bodies' states, the last time; 0: before, and of the world
+    bool due = true;  ///< its bodies have moved since turns were counted: those of bodies that sleep are not
     int axes = 0;
     double hinge = 0;  ///< of a hinge: the sign of its AxisView; 0: another joint
     Quaternion rotation;
@@ -89,6 +90,8 @@ class JointKinematics {
   /// Sets the turns of an axis, and counts them in State::turned.
   void setTurns(engine::JointCoordinates& c, int axis, std::int32_t turns);
   void listTurning();
+  /// Counts turns, of joints whose bodies sleep when they wake. `stepped`: all that are awake may have moved.
+  void count(bool stepped);
   std::array<Vec3, 3> eulerAxes(const engine::Joint& joint) const;
   double eulerAngle(const engine::Joint& joint, int axis) const;
   /// True while the angle of a hinge is known; never of another joint.

@@ -94,20 +94,23 @@ void JointKinematics::listTurning() {
 
 void JointKinematics::begin() {
   if (turningAt_ != model().structure) listTurning();
-  if (countedAt_ != world_.poses) countTurns();
+  if (countedAt_ != world_.poses) count(false);
 }
 
-void JointKinematics::countTurns() {
+void JointKinematics::countTurns() { count(true); }
+
+void JointKinematics::count(bool stepped) {
   for (Turning& t : turning_) {
     const DynamicState &a = state().bodies[t.a], *b = world_.stateAt(t.b);
     const std::uint32_t versionA = std::exchange(t.versionA, a.version),
                         versionB = std::exchange(t.versionB, b ? b->version : 0);
     CachedAngle& cache = cached_[t.joint];
-    if (!a.awake && !(b && b->awake)) {
-      // Nothing moved: what was known of it is still true.
-      if (versionA == t.versionA && versionB == t.versionB && cache.at == countedAt_) cache.at = world_.poses;
-      continue;
-    }
+    if (versionA != t.versionA || versionB != t.versionB)
+      t.due = true;
+    else if (cache.at == countedAt_)
+      cache.at = world_.poses;  // nothing moved: what was known of it is still true
+    if (!(a.awake || (b && b->awake)) || !(t.due || stepped)) continue;
+    t.due = false;
     JointCoordinates& c = state().coordinates[t.joint];
     for (int axis = 0; axis < t.axes; ++axis) {
       const double now = t.hinge != 0 ? hingeAngleOf(a, b, t.rotation, t.axis) : rawAngle(t.joint, axis);
@@ -166,6 +169,7 @@ void JointKinematics::load(Index joint, int axis, double angle) {
   setTurns(c, axis, static_cast<std::int32_t>(std::round(angle / (2 * kPi))));
   c.angle[axis] = angle - 2 * kPi * c.turns[axis];
   cached_[joint].at = 0;
+  turningAt_ = 0;
 }
 
 }  // namespace spark::physics

@@ -188,6 +188,16 @@ TEST_CASE("a ScriptEffector may delete itself while it acts") {
   CHECK(a.agents() == 1);
 }
 
+TEST_CASE("a ScriptEffector may delete another one of its agent, whose later actions are unknown") {
+  ScriptArena a(R"(agent:new('TestMotor', 'he1') agent:new('TestMotor', 'he2')
+    agent:new('ScriptEffector', 'drop'):on('perform', function() delete('/usr/scene/AgentAspect1/he1') end))");
+  a.act("(he1 1)(he2 1)");
+  a.act("(he1 2)(drop)(he1 3)(he2 2)");
+  a.act("(he1 4)(he2 3)");
+  CHECK(actionLog() == std::vector<std::string>{"1 he1 1", "1 he2 1", "1 he1 2", "1 he2 2", "1 he2 3"});
+  CHECK(a.agents() == 1);
+}
+
 TEST_CASE("a ScriptBehavior may delete itself while it starts or thinks, and its agent leaves") {
   for (const char* channel : {"start", "think"}) {
     Arena a;
