@@ -74,9 +74,9 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
       .doc("Standard deviations of distance, vertical and horizontal angle; half width of the calibration error.");
 }
 
-Vec3f RestrictedVisionPerceptor::toView(const Vec3f& offset) const {
-  if (usesTeamFrame()) return soccer::toTeamFrame(side(), offset);
-  return transform()->world().block<3, 3>(0, 0).transpose() * offset;
+Vec3f RestrictedVisionPerceptor::toView(const Vec3f& point) const {
+  const Vec3f offset = point - origin_;
+  return (usesTeamFrame_ ? soccer::toTeamFrame(side(), offset) : Vec3f(toHead_ * offset)) + calibration_;
 }
 
 soccer::Polar RestrictedVisionPerceptor::direction(const Vec3f& view) const {
@@ -108,7 +108,6 @@ bool RestrictedVisionPerceptor::isClearlyOutside(const Vec3f& view) const {
 }
 
 bool RestrictedVisionPerceptor::measure(const Vec3f& view, soccer::Polar& out) {
-  if (isClearlyOutside(view)) return false;
   // With static axes the direction depends on pan and tilt, too: it is not cached.
   if (staticAxis_ || nextCached_ == cache_.size()) return out = direction(view), inCone(out);
   CachedDirection& cached = cache_[nextCached_++];
@@ -124,10 +123,12 @@ bool RestrictedVisionPerceptor::measure(const Vec3f& view, soccer::Polar& out) {
 }
 
 bool RestrictedVisionPerceptor::see(const Vec3f& point, const IRigidBody* body, soccer::Polar& out) {
-  const Vec3f offset = point - origin_;
-  const float distance = offset.norm();
+  // The cheapest test first: most points are outside of the cone.
+  const Vec3f view = toView(point);
+  if (isClearlyOutside(view)) return false;
+  const float distance = (point - origin_).norm();
   if (distance <= kMinDistance || distance > eye_.range()) return false;
-  if (!measure(toView(offset) + noise_.calibration(), out) || eye_.isHidden(origin_, point, body)) return false;
+  if (!measure(view, out) || eye_.isHidden(origin_, point, body)) return false;
   // After the test of the cone, as in the installed base: reported angles can be slightly outside.
   noise_.apply(out);
   return true;
@@ -151,9 +152,9 @@ bool RestrictedVisionPerceptor::seeLine(const VisibleObjects::FieldLine& line, s
                                         soccer::Polar& end) {
   Vec3f from = line.begin, to = line.end;
   if (eye_.hides() && !uncover(from, to)) return false;
-  Vec3f a = toView(from - origin_) + noise_.calibration(), b = toView(to - origin_) + noise_.calibration();
+  Vec3f a = toView(from), b = toView(to);
   const auto visible = [this](const Vec3f& p, soccer::Polar& polar) {
-    return p.norm() > kMinDistance && measure(p, polar);
+    return p.norm() > kMinDistance && !isClearlyOutside(p) && measure(p, polar);
   };
   // With static axes a line is seen entirely or not at all.
   if (!visible(a, begin) || !visible(b, end)) {
@@ -193,6 +194,9 @@ void RestrictedVisionPerceptor::beginSense() {
   eye_.beginSense(*this, range_);
   noise_.allowed = !eye_.settings() || eye_.settings()->visionNoise;
   origin_ = soccer::worldPosition(*this);
+  usesTeamFrame_ = usesTeamFrame();
+  if (!usesTeamFrame_) toHead_ = transform()->world().block<3, 3>(0, 0).transpose();
+  calibration_ = noise_.calibration();
   cache_.resize(std::min(eye_.objects().size(), kMaxCached));
   nextCached_ = 0;
   const int halfPan = std::min(cone_[0], 360) / 2, halfTilt = std::min(cone_[1], 360) / 2;  // whole degrees

@@ -64,8 +64,8 @@ class RestrictedVisionPerceptor : public Perceptor,
   soccer::Side side() const { return eye_.state() ? eye_.state()->side() : soccer::Side::none; }
   /// True when angles are relative to the team's frame, false: to the head's.
   bool usesTeamFrame() const { return staticAxis_ || !transform(); }
-  /// Rotates an offset from the eye (world frame [m]) into the frame in which angles are measured.
-  Vec3f toView(const Vec3f& offset) const;
+  /// A point (world frame [m]) in the frame in which angles are measured, with the calibration error [m].
+  Vec3f toView(const Vec3f& point) const;
   /// Polar coordinates of a point in that frame [m], without noise.
   soccer::Polar direction(const Vec3f& view) const;
   bool inCone(const soccer::Polar& p) const;
@@ -100,7 +100,10 @@ class RestrictedVisionPerceptor : public Perceptor,
   std::vector<CachedDirection> cache_;  ///< in the order of the tests
   std::size_t nextCached_ = 0;          ///< index for the next test
   // During sense():
-  Vec3f origin_ = Vec3f::Zero();  ///< own position, world frame [m]
+  Vec3f origin_ = Vec3f::Zero();       ///< own position, world frame [m]
+  Vec3f calibration_ = Vec3f::Zero();  ///< VisionNoise::calibration()
+  bool usesTeamFrame_ = true;
+  Eigen::Matrix3f toHead_ = Eigen::Matrix3f::Identity();  ///< from the world's axes to the head's
   struct {
     double sin = 0, cos = 1;
   } halfWidth_, halfHeight_;               ///< of half the angles of the cone
