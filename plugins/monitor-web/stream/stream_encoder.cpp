@@ -23,8 +23,8 @@ std::int32_t quantum(float exact, std::int32_t before) {
   if (!std::isfinite(exact)) return before;
   if (std::abs(exact - static_cast<float>(before)) <= kHysteresis) return before;
   // As std::lround(), which is a call: the sum is exact.
-  const double most = std::clamp(exact, -kMaxQuantised, kMaxQuantised);
-  return static_cast<std::int32_t>(most + (most < 0 ? -0.5 : 0.5));
+  const double value = std::clamp(exact, -kMaxQuantised, kMaxQuantised);
+  return static_cast<std::int32_t>(value + (value < 0 ? -0.5 : 0.5));
 }
 
 /// The rotation of a matrix. Tolerates scaled and sheared matrices; the identity if there is none.
