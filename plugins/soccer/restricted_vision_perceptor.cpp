@@ -76,7 +76,7 @@ void RestrictedVisionPerceptor::describe(Description<RestrictedVisionPerceptor>&
 
 Vec3f RestrictedVisionPerceptor::toView(const Vec3f& point) const {
   const Vec3f offset = point - origin_;
-  return (usesTeamFrame_ ? soccer::toTeamFrame(side(), offset) : Vec3f(toHead_ * offset)) + calibration_;
+  return (usesTeamFrame_ ? soccer::toTeamFrame(side(), offset) : Vec3f(head_.transpose() * offset)) + calibration_;
 }
 
 soccer::Polar RestrictedVisionPerceptor::direction(const Vec3f& view) const {
@@ -195,7 +195,7 @@ void RestrictedVisionPerceptor::beginSense() {
   noise_.allowed = !eye_.settings() || eye_.settings()->visionNoise;
   origin_ = soccer::worldPosition(*this);
   usesTeamFrame_ = usesTeamFrame();
-  if (!usesTeamFrame_) toHead_ = transform()->world().block<3, 3>(0, 0).transpose();
+  if (!usesTeamFrame_) head_ = transform()->world().block<3, 3>(0, 0);
   calibration_ = noise_.calibration();
   cache_.resize(std::min(eye_.objects().size(), kMaxCached));
   nextCached_ = 0;

@@ -103,7 +103,7 @@ class RestrictedVisionPerceptor : public Perceptor,
   Vec3f origin_ = Vec3f::Zero();       ///< own position, world frame [m]
   Vec3f calibration_ = Vec3f::Zero();  ///< VisionNoise::calibration()
   bool usesTeamFrame_ = true;
-  Eigen::Matrix3f toHead_ = Eigen::Matrix3f::Identity();  ///< from the world's axes to the head's
+  Eigen::Matrix3f head_ = Eigen::Matrix3f::Identity();  ///< the head's axes in the world
   struct {
     double sin = 0, cos = 1;
   } halfWidth_, halfHeight_;               ///< of half the angles of the cone

@@ -22,7 +22,7 @@ constexpr float kMaxQuantised = 1 << 30;
 std::int32_t quantum(float exact, std::int32_t before) {
   if (!std::isfinite(exact)) return before;
   if (std::abs(exact - static_cast<float>(before)) <= kHysteresis) return before;
-  // As std::lround(), which is a call: the sum is exact.
+  // As std::lround(), which is a call.
   const double value = std::clamp(exact, -kMaxQuantised, kMaxQuantised);
   return static_cast<std::int32_t>(value + (value < 0 ? -0.5 : 0.5));
 }
