@@ -165,8 +165,10 @@ struct alignas(64) Joint {
   /// Only a second body was attached, and is `a`. A slider's axis then points the other way, and an Euler motor's first
   /// and third axes change places.
   bool reversed = false;
-  bool wantsFeedback = false;     ///< a step writes the joint's JointState
-  std::array<JointAxis, 3> axes;  ///< only as many as the type has axes are used; ball joints have damping alone
+  bool wantsFeedback = false;  ///< a step writes the joint's JointState
+  /// Only as many as the type has axes are used; ball joints have damping alone. The first one is beside the type, in a
+  /// cache line: a command to a motor reads both.
+  std::array<JointAxis, 3> axes;
   JointFrame inA, inB;
   double cosAxes = 0, sinAxes = 0;  ///< hinge2: cosine and sine of the angle between the axes when set
   AngularMotor motor;               ///< of an angular motor

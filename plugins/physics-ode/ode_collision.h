@@ -41,6 +41,7 @@ struct SpaceData {
 
 /// A geom, in its own place: ODE refers to it.
 struct GeomData {
+  // The members up to `centred` are read for each geom whose body has moved: they are side by side.
   std::uint64_t id;
   dGeomID geom = nullptr;
   dReal* rotation = nullptr;            ///< ODE's memory: 3 rows of 4 elements; nullptr: a plane

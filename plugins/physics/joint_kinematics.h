@@ -68,7 +68,7 @@ class JointKinematics {
   struct Turning {
     engine::Index joint, a, b;
     std::uint32_t versionA = 0, versionB = 0;  ///< of the bodies' states, the last time; 0: before, and of the world
-    bool due = true;  ///< its bodies have moved since turns were counted: those of bodies that sleep are not
+    bool due = true;  ///< its bodies have moved since its turns were counted, which waits while both sleep
     int axes = 0;
     double hinge = 0;  ///< of a hinge: the sign of its AxisView; 0: another joint
     Quaternion rotation;
@@ -90,7 +90,7 @@ class JointKinematics {
   /// Sets the turns of an axis, and counts them in State::turned.
   void setTurns(engine::JointCoordinates& c, int axis, std::int32_t turns);
   void listTurning();
-  /// Counts turns, of joints whose bodies sleep when they wake. `stepped`: all that are awake may have moved.
+  /// Counts the turns of joints with a body that is awake. `stepped`: all of these may have moved.
   void count(bool stepped);
   std::array<Vec3, 3> eulerAxes(const engine::Joint& joint) const;
   double eulerAngle(const engine::Joint& joint, int axis) const;

@@ -93,7 +93,7 @@ TEST_CASE("a hinge's angle follows its bodies, its axis and its turns, asleep an
       expect(0.5, 0);
       two.run(2);
       expect(0.5, 0);
-      turn(0.25);  // nobody reads it before the step
+      turn(0.25);  // the angle is not read before the next step
       two.run(2);
       expect(0.25, 0);
       two.world.loadCoordinate(j, 0, 0.25 + 2 * kPi);
