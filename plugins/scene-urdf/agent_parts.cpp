@@ -26,19 +26,39 @@ void AgentParts::drives() {
     for (const Element& e : childrenOf(t)) {
       if (e.tag() != "joint") continue;
       const std::string name = nameOf(e);
-      if (!joints.contains(name)) throw e.error(fmt::format("there is no joint '{}'", name));
+      if (!joints.contains(name)) {
+        unsupported_.add(e, fmt::format("the {} is left out: there is no joint '{}'", t.named(), name));
+        continue;
+      }
+      reductions(t);
       const auto joint = movable.find(name);
       if (joint == movable.end() || !driven.insert(name).second) continue;
-      // hardware_interface/EffortJointInterface, PositionJointInterface, VelocityJointInterface
-      const auto interface = childOf(e, "hardwareInterface");
-      const std::string_view kind = interface ? interface->node.text().get() : "";
-      drive(e, *joint->second, kind.find("Effort") != std::string_view::npos);
+      drive(e, *joint->second, interfaceOf(t, e).find("Effort") != std::string_view::npos);
     }
   }
   if (any) return;
   for (const mjcf::Body& b : model_.bodies)
     for (const mjcf::Joint& j : b.joints)
       if (movable.contains(j.name) && !followers.contains(j.name)) drive(j.from, j, false);
+}
+
+/// hardware_interface/EffortJointInterface, PositionJointInterface, VelocityJointInterface: of the joint, or in older
+/// files of its actuator.
+std::string_view AgentParts::interfaceOf(const Element& transmission, const Element& joint) {
+  if (const auto own = childOf(joint, "hardwareInterface")) return contentOf(*own);
+  const auto actuator = childOf(transmission, "actuator");
+  const auto interface = actuator ? childOf(*actuator, "hardwareInterface") : std::nullopt;
+  return interface ? contentOf(*interface) : "";
+}
+
+void AgentParts::reductions(const Element& around) {
+  for (const Element& e : childrenOf(around)) {
+    if (e.tag() == "joint" || e.tag() == "actuator") reductions(e);
+    if (e.tag() != "mechanicalReduction") continue;
+    const auto found = numbersOf(contentOf(e));
+    if (!found || found->front() != 1)
+      unsupported_.add(e, "a <mechanicalReduction> other than 1 is ignored: agents drive the joint itself");
+  }
 }
 
 void AgentParts::drive(const Element& from, const mjcf::Joint& joint, bool byForceAlone) {

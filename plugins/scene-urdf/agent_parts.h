@@ -13,7 +13,6 @@ class AgentParts {
   /// `root`: the element `robot`. All must outlive this.
   AgentParts(const Element& root, mjcf::Model& model, Unsupported& unsupported)
       : root_(root), model_(model), unsupported_(unsupported) {}
-  /// Throws Error with file:line:column.
   void add() {
     drives();
     sensors();
@@ -22,6 +21,8 @@ class AgentParts {
 
  private:
   void drives();
+  static std::string_view interfaceOf(const Element& transmission, const Element& joint);
+  void reductions(const Element& around);
   void drive(const Element& from, const mjcf::Joint& joint, bool byForceAlone);
   void sensors();
   void imus();

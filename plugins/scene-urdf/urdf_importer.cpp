@@ -1,12 +1,9 @@
 #include "urdf_importer.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
-
-#include <algorithm>
 
 #include "api/files.h"
-#include "meshes/mesh_file.h"
+#include "mesh_finder.h"
 #include "robot/builder.h"
 #include "spark/plugin.h"
 #include "urdf_reader.h"
@@ -19,7 +16,7 @@ void UrdfImporter::describe(Description<UrdfImporter>& d) {
       "stands.");
   d.implements<ISceneImporter>();
   d.property("strict", &UrdfImporter::strict_)
-      .doc("Unsupported elements and attributes are errors; otherwise they are logged.");
+      .doc("What is not supported, mended or left out is an error; otherwise it is logged.");
   d.property("selfCollide", &UrdfImporter::selfCollide_)
       .doc("Links of a robot collide with each other, unless a joint connects them.");
 }
@@ -38,16 +35,15 @@ void UrdfImporter::import(std::string_view file, Node& root, const List& argumen
     base = word == "fixed" ? urdf::Base::fixed : urdf::Base::free;
   }
   auto& files = kernel().root().require<IFileServer>();
-  const auto readMesh = [&](const std::string& name) {
-    const std::vector<std::string> candidates = urdf::meshNames(file, name);
-    for (const std::string& candidate : candidates)
-      if (files.exists(candidate)) return meshes::readMesh(candidate, files.read(candidate));
-    throw Error(fmt::format("there is no such file; looked for {}", fmt::join(candidates, ", ")));
-  };
+  urdf::MeshFinder meshes(files, std::string(file));
+  const urdf::ReadMesh readMesh = [&](const std::string& name) { return meshes.read(name); };
   mjcf::Unsupported unsupported;
   const urdf::Document document(std::string(file), files.read(file));
   mjcf::Model model = urdf::readModel(document, base, readMesh, unsupported);
-  model.selfCollides = selfCollide_;
+  if (selfCollide_) {
+    model.selfCollides = true;
+    model.exclusions.clear();
+  }
   mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, unsupported);
   builder.build(root);
   if (builder.withoutParts())

@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "agent_parts.h"
+#include "gazebo_reader.h"
 #include "geometry_reader.h"
 #include "robot/mended_mass.h"
+#include "vocabulary.h"
 
 namespace spark::urdf {
 
@@ -34,16 +37,23 @@ class Reader {
   };
 
   void readLinks();
+  int addLink(const Element& from, const std::string& name);
   void readJoints();
-  int linkOf(const Element& joint, const char* tag) const;
-  int rootLink() const;
+  void readJoint(const Element& e);
+  int linkOf(const Element& joint, const char* tag);
+  int rootLink();
+  int linksBelow(int root) const;
   void place(int link, int parentBody);
   void placeAll(int link);
   void inertial(const Element& link, mjcf::Body& body);
+  void contact(const Element& link, mjcf::Body& body);
   void joints(const JointElement& j, mjcf::Body& body);
   mjcf::Joint axisOf(const JointElement& j, mjcf::JointKind kind, const Vec3& axis);
   void limits(const Element& e, mjcf::Joint& joint);
+  void dynamics(const Element& e, mjcf::Joint& joint);
   void mimic(const Element& e, const std::string& joint);
+  void dropFollowers();
+  void freeBase();
 
   const Element root_;
   const Base base_;
@@ -56,74 +66,109 @@ class Reader {
 };
 
 mjcf::Model Reader::read() {
-  model_.name = root_.node.attribute("name").value();
+  model_.name = textOf(root_, "name");
+  if (model_.name.empty()) unsupported_.add(root_, "the robot has no name: it is called 'model'");
   model_.selfCollides = false;
   model_.bodies.emplace_back().from = root_;
+  nameUnknown(root_, unsupported_);
   readLinks();
   readJoints();
-  for (const Element& e : childrenOf(root_)) {
-    static constexpr std::string_view kKnown[] = {"link", "joint", "material", "transmission", "gazebo"};
-    if (std::find(std::begin(kKnown), std::end(kKnown), e.tag()) == std::end(kKnown)) unsupported_.element(e);
-  }
   placeAll(rootLink());
   mjcf::weighLightBodies(model_, "a <link>", unsupported_);  // links that only connect joints often have none
+  GazeboReader(root_, model_, unsupported_).apply();
   AgentParts(root_, model_, unsupported_).add();
   return std::move(model_);
 }
 
 void Reader::readLinks() {
+  bool xacro = false;
   for (const Element& e : childrenOf(root_)) {
-    if (e.tag() != "link") continue;
-    const std::string name = nameOf(e);
-    if (!linkByName_.emplace(name, static_cast<int>(links_.size())).second)
-      throw e.error(fmt::format("there are two links '{}'", name));
-    links_.push_back({e, name});
-    if (links_.size() > mjcf::kMaxBodies) throw e.error(fmt::format("expected at most {} links", mjcf::kMaxBodies));
+    xacro |= e.tag().starts_with("xacro:");
+    if (e.tag() == "link") addLink(e, nameOf(e));
   }
-  if (links_.empty()) throw root_.error("expected a <link>, found none");
+  if (links_.empty())
+    throw root_.error(fmt::format("expected a <link>, found none{}",
+                                  xacro ? ": this is xacro; expand it first (xacro robot.xacro > robot.urdf)" : ""));
 }
 
-int Reader::linkOf(const Element& joint, const char* tag) const {
+int Reader::addLink(const Element& from, const std::string& name) {
+  const int number = static_cast<int>(links_.size());
+  if (!linkByName_.emplace(name, number).second) throw from.error(fmt::format("there are two links '{}'", name));
+  links_.push_back({from, name});
+  if (links_.size() > mjcf::kMaxBodies) throw from.error(fmt::format("expected at most {} links", mjcf::kMaxBodies));
+  return number;
+}
+
+int Reader::linkOf(const Element& joint, const char* tag) {
   const auto e = childOf(joint, tag);
   if (!e) throw joint.error(fmt::format("expected an element <{}> in {}", tag, joint.named()));
-  const std::string name = e->node.attribute("link").value();
+  const std::string name(textOf(*e, "link"));
   const auto found = linkByName_.find(name);
-  if (found == linkByName_.end()) throw e->error(fmt::format("there is no link '{}'", name));
-  return found->second;
+  if (found != linkByName_.end()) return found->second;
+  if (name != "world" || std::string_view(tag) != "parent") throw e->error(fmt::format("there is no link '{}'", name));
+  unsupported_.add(*e, "there is no link 'world': the world itself is meant");
+  return addLink(*e, name);
 }
 
 void Reader::readJoints() {
-  for (const Element& e : childrenOf(root_)) {
-    if (e.tag() != "joint") continue;
-    JointElement j{e, nameOf(e), e.node.attribute("type").value()};
-    static constexpr std::string_view kTypes[] = {"revolute", "continuous", "prismatic", "fixed", "floating", "planar"};
-    if (std::find(std::begin(kTypes), std::end(kTypes), j.type) == std::end(kTypes))
-      throw e.error(fmt::format(
-          "expected revolute, continuous, prismatic, fixed, floating or planar for 'type', found '{}'", j.type));
-    j.parent = linkOf(e, "parent");
-    j.child = linkOf(e, "child");
-    const int number = static_cast<int>(joints_.size());
-    if (!jointByName_.emplace(j.name, number).second) throw e.error(fmt::format("there are two joints '{}'", j.name));
-    Link& child = links_[static_cast<std::size_t>(j.child)];
-    if (child.above >= 0)
-      throw e.error(fmt::format("the link '{}' is the child of two joints, '{}' and '{}'; expected a tree", child.name,
-                                joints_[static_cast<std::size_t>(child.above)].name, j.name));
-    child.above = number;
-    links_[static_cast<std::size_t>(j.parent)].joints.push_back(number);
-    joints_.push_back(std::move(j));
-  }
+  for (const Element& e : childrenOf(root_))
+    if (e.tag() == "joint") readJoint(e);
 }
 
-int Reader::rootLink() const {
-  int found = -1;
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    if (links_[i].above >= 0) continue;
-    if (found >= 0)
-      throw links_[i].from.error(fmt::format("expected one link that is no child of a joint, found two, '{}' and '{}'",
-                                             links_[static_cast<std::size_t>(found)].name, links_[i].name));
-    found = static_cast<int>(i);
+void Reader::readJoint(const Element& e) {
+  static constexpr std::string_view kTypes[] = {"revolute", "continuous", "prismatic", "fixed",
+                                                "floating", "planar",     "spherical"};
+  JointElement j{e, nameOf(e), std::string(textOf(e, "type"))};
+  if (std::find(std::begin(kTypes), std::end(kTypes), j.type) == std::end(kTypes))
+    throw e.error(fmt::format(
+        "expected revolute, continuous, prismatic, fixed, floating or planar for 'type', found '{}'", j.type));
+  j.parent = linkOf(e, "parent");
+  j.child = linkOf(e, "child");
+  const int number = static_cast<int>(joints_.size());
+  if (jointByName_.contains(j.name)) throw e.error(fmt::format("there are two joints '{}'", j.name));
+  Link& child = links_[static_cast<std::size_t>(j.child)];
+  if (child.above >= 0)
+    return unsupported_.add(
+        e, fmt::format("the joint '{}' is left out: its child, the link '{}', is that of the joint '{}' already",
+                       j.name, child.name, joints_[static_cast<std::size_t>(child.above)].name));
+  jointByName_.emplace(j.name, number);
+  child.above = number;
+  links_[static_cast<std::size_t>(j.parent)].joints.push_back(number);
+  joints_.push_back(std::move(j));
+}
+
+/// Itself and all below it.
+int Reader::linksBelow(int root) const {
+  int count = 0;
+  for (std::vector<int> open{root}; !open.empty(); ++count) {
+    const Link& link = links_[static_cast<std::size_t>(open.back())];
+    open.pop_back();
+    for (const int j : link.joints) open.push_back(joints_[static_cast<std::size_t>(j)].child);
   }
-  if (found < 0) throw root_.error("each link is the child of a joint: the joints go round in a circle");
+  return count;
+}
+
+/// That of the largest tree. Other trees are left out.
+int Reader::rootLink() {
+  std::vector<int> roots;
+  for (std::size_t i = 0; i < links_.size(); ++i)
+    if (links_[i].above < 0) roots.push_back(static_cast<int>(i));
+  if (roots.empty()) throw root_.error("each link is the child of a joint: the joints go round in a circle");
+  int inTrees = 0, largest = 0, found = -1;
+  for (const int root : roots) {
+    const int count = linksBelow(root);
+    inTrees += count;
+    if (count > largest) largest = count, found = root;
+  }
+  if (inTrees < static_cast<int>(links_.size()))
+    throw root_.error("expected links that all hang on one root, found joints that go round in a circle");
+  const std::string& name = links_[static_cast<std::size_t>(found)].name;
+  for (const int root : roots)
+    if (root != found) {
+      const Link& link = links_[static_cast<std::size_t>(root)];
+      unsupported_.add(link.from, fmt::format("the link '{}'{} is left out: it does not hang on the root link '{}'",
+                                              link.name, link.joints.empty() ? "" : " with all below it", name));
+    }
   return found;
 }
 
@@ -139,10 +184,21 @@ void Reader::placeAll(int root) {
       open.push_back(child);
     }
   }
-  for (const Link& link : links_)
-    if (link.body < 0) throw link.from.error(fmt::format("the link '{}' does not hang on the root link", link.name));
-  // The base is free if it can fall.
-  std::size_t base = 1;
+  dropFollowers();
+  freeBase();
+}
+
+/// A joint whose leader is in a tree that was left out follows nothing.
+void Reader::dropFollowers() {
+  std::set<std::string_view> made;
+  for (const mjcf::Body& b : model_.bodies)
+    for (const mjcf::Joint& j : b.joints) made.insert(j.name);
+  std::erase_if(model_.equalities, [&](const mjcf::Equality& q) { return !made.contains(q.second); });
+}
+
+/// The base is free if it can fall.
+void Reader::freeBase() {
+  const std::size_t base = 1;
   double mass = 0;
   std::vector<bool> isFixed(model_.bodies.size());
   for (std::size_t i = base; i < model_.bodies.size(); ++i) {
@@ -151,8 +207,8 @@ void Reader::placeAll(int root) {
     if (isFixed[i]) mass += b.mass.mass;
   }
   mjcf::Body& b = model_.bodies[base];
-  const bool free = base_ == Base::free || (base_ == Base::byFile && b.name != "world" && mass > 0);
-  if (!free) return;
+  const bool canFall = b.name != "world" && mass > 0 && !GazeboReader::isStatic(root_);
+  if (base_ == Base::fixed || (base_ == Base::byFile && !canFall)) return;
   mjcf::Joint j;
   j.from = b.from;
   j.kind = mjcf::JointKind::free;
@@ -169,12 +225,21 @@ void Reader::place(int number, int parentBody) {
   body.hasInertial = true;
   inertial(link.from, body);
   geometry_.read(link.from, body);
-  for (const Element& e : childrenOf(link.from))
-    if (e.tag() != "inertial" && e.tag() != "visual" && e.tag() != "collision") unsupported_.element(e);
+  contact(link.from, body);
   if (link.above < 0) return;
   const JointElement& j = joints_[static_cast<std::size_t>(link.above)];
   body.pose = originOf(j.from, unsupported_);
   joints(j, body);
+}
+
+/// As Bullet has it.
+void Reader::contact(const Element& link, mjcf::Body& body) {
+  const auto e = childOf(link, "contact");
+  const auto friction = e ? childOf(*e, "lateral_friction") : std::nullopt;
+  if (!friction) return;
+  const double mu = Numbers(*friction, unsupported_).number("value", 1);
+  if (mu < 0) return unsupported_.add(*friction, "a friction below 0 is ignored");
+  for (mjcf::Geom& g : body.geoms) g.contact.friction[0] = mu;
 }
 
 void Reader::inertial(const Element& link, mjcf::Body& body) {
@@ -183,16 +248,16 @@ void Reader::inertial(const Element& link, mjcf::Body& body) {
   const Pose at = originOf(*e, unsupported_);
   engine::Mass mass{0, at.position, Mat3::Zero()};
   if (const auto m = childOf(*e, "mass")) {
-    Attributes a(*m, unsupported_);
-    mass.mass = a.number("value", 0);
-    if (mass.mass < 0) throw m->error(fmt::format("expected a mass of 0 or more, found {}", mass.mass));
-    a.finish();
+    mass.mass = Numbers(*m, unsupported_).number("value", 0);
+    if (mass.mass < 0) {
+      unsupported_.add(*m, "a mass below 0 counts as none");
+      mass.mass = 0;
+    }
   }
   if (const auto i = childOf(*e, "inertia")) {
-    Attributes a(*i, unsupported_);
+    Numbers a(*i, unsupported_);
     const double xy = a.number("ixy", 0), xz = a.number("ixz", 0), yz = a.number("iyz", 0);
     mass.inertia << a.number("ixx", 0), xy, xz, xy, a.number("iyy", 0), yz, xz, yz, a.number("izz", 0);
-    a.finish();
   }
   if (mass.mass > 0) mjcf::mendInertia(mass, *e, "an <inertial>", unsupported_);
   mass.inertia = at.rotation * mass.inertia * at.rotation.transpose();
@@ -212,23 +277,31 @@ void Reader::joints(const JointElement& j, mjcf::Body& body) {
   using mjcf::JointKind;
   if (j.type == "fixed") return;
   if (j.type == "floating") {
-    if (body.parent != 1 || !model_.bodies[1].joints.empty() || model_.bodies[1].mass.mass > 0)
-      throw j.from.error("a floating joint is supported only below a root link without a mass, such as 'world'");
     body.joints.push_back(axisOf(j, JointKind::free, Vec3::UnitZ()));
     // A body that moves freely hangs on the world itself.
-    body.pose = compose(model_.bodies[1].pose, body.pose);
+    for (; body.parent > 0; body.parent = model_.bodies[static_cast<std::size_t>(body.parent)].parent)
+      body.pose = compose(model_.bodies[static_cast<std::size_t>(body.parent)].pose, body.pose);
     body.parent = 0;
+    return;
+  }
+  if (j.type == "spherical") {
+    body.joints.push_back(axisOf(j, JointKind::ball, Vec3::UnitZ()));
+    if (const auto e = childOf(j.from, "dynamics")) dynamics(*e, body.joints.back());
     return;
   }
   Vec3 axis = Vec3::UnitX();
   if (const auto e = childOf(j.from, "axis")) {
-    Attributes a(*e, unsupported_);
-    a.take("xyz", axis);
-    a.finish();
-    if (!(axis.norm() > 1e-10)) throw e->error("expected an axis that is not 0");
+    Numbers(*e, unsupported_).take("xyz", axis);
+    if (!(axis.norm() > 1e-10)) {
+      unsupported_.add(*e, "an axis of length 0 counts as '1 0 0'");
+      axis = Vec3::UnitX();
+    }
   }
   axis.normalize();
   if (j.type == "planar") {
+    for (const char* const tag : {"limit", "mimic", "dynamics"})
+      if (const auto e = childOf(j.from, tag))
+        unsupported_.add(*e, fmt::format("the <{}> of a planar joint is not supported", tag));
     // In the plane across the axis, and about it.
     const Vec3 x = axis.unitOrthogonal();
     int number = 0;
@@ -243,47 +316,55 @@ void Reader::joints(const JointElement& j, mjcf::Body& body) {
   mjcf::Joint joint = axisOf(j, j.type == "prismatic" ? JointKind::slide : JointKind::hinge, axis);
   joint.limited = j.type != "continuous";
   limits(j.from, joint);
-  for (const Element& e : childrenOf(j.from)) {
-    const auto tag = e.tag();
-    if (tag == "mimic")
-      mimic(e, j.name);
-    else if (tag == "dynamics") {
-      Attributes a(e, unsupported_);
-      joint.damping = std::max(a.number("damping", 0), 0.0);
-      joint.dryFriction = std::max(a.number("friction", 0), 0.0);
-      a.finish();
-    } else if (tag != "origin" && tag != "parent" && tag != "child" && tag != "axis" && tag != "limit" &&
-               tag != "calibration" && tag != "safety_controller" && tag != "hardwareInterface") {
-      unsupported_.element(e);
-    }
-  }
+  if (const auto e = childOf(j.from, "dynamics")) dynamics(*e, joint);
+  if (const auto e = childOf(j.from, "mimic")) mimic(*e, j.name);
   body.joints.push_back(std::move(joint));
 }
 
+/// Readers of URDF take limits of which the lower is not below the upper one as none.
 void Reader::limits(const Element& joint, mjcf::Joint& out) {
   const auto e = childOf(joint, "limit");
   if (!e) {
     if (out.limited)
-      throw joint.error(fmt::format("expected an element <limit> in {}: its type has limits", joint.named()));
+      unsupported_.add(joint, fmt::format("a {} joint without <limit> has no limits", textOf(joint, "type")));
+    out.limited = false;
     return;
   }
-  Attributes a(*e, unsupported_);
+  Numbers a(*e, unsupported_);
   out.range = {a.number("lower", 0), a.number("upper", 0)};
-  if (out.limited && out.range[0] > out.range[1])
-    throw e->error(fmt::format("expected 'lower' not above 'upper', found {} and {}", out.range[0], out.range[1]));
-  if (const double effort = a.number("effort", 0); effort > 0) out.maxForce = effort;
-  a.ignore({"velocity", "acceleration", "jerk"});
-  a.finish();
+  if (out.limited && !(out.range[0] < out.range[1])) {
+    unsupported_.add(*e, "a <limit> whose 'lower' is not below its 'upper' counts as no limit");
+    out.limited = false;
+  }
+  const double effort = a.number("effort", 0);
+  if (effort > 0)
+    out.maxForce = effort;
+  else if (e->node.attribute("effort"))
+    unsupported_.add(*e, "an 'effort' that is not above 0 counts as no limit");
+}
+
+void Reader::dynamics(const Element& e, mjcf::Joint& joint) {
+  Numbers a(e, unsupported_);
+  const auto atLeastZero = [&](const char* attribute) {
+    const double v = a.number(attribute, 0);
+    if (v < 0) unsupported_.add(e, fmt::format("a '{}' below 0 counts as 0", attribute));
+    return std::max(v, 0.0);
+  };
+  joint.damping = atLeastZero("damping");
+  joint.dryFriction = atLeastZero("friction");
 }
 
 void Reader::mimic(const Element& e, const std::string& joint) {
-  Attributes a(e, unsupported_);
-  const std::string leader = a.text("joint");
+  const std::string leader(textOf(e, "joint"));
+  const auto leave = [&](const std::string& why) {
+    unsupported_.add(e, fmt::format("the <mimic> of the joint '{}' is left out: {}", joint, why));
+  };
   const auto found = jointByName_.find(leader);
-  if (found == jointByName_.end()) throw e.error(fmt::format("there is no joint '{}'", leader));
+  if (found == jointByName_.end()) return leave(fmt::format("there is no joint '{}'", leader));
   const std::string& type = joints_[static_cast<std::size_t>(found->second)].type;
   if (leader == joint || (type != "revolute" && type != "continuous" && type != "prismatic"))
-    throw e.error(fmt::format("expected another joint of one axis to mimic, found '{}'", leader));
+    return leave(fmt::format("expected another joint of one axis, found '{}'", leader));
+  Numbers a(e, unsupported_);
   mjcf::Equality q;
   q.from = e;
   q.type = "joint";
@@ -291,7 +372,6 @@ void Reader::mimic(const Element& e, const std::string& joint) {
   q.first = joint;
   q.second = leader;
   q.polynomial = {a.number("offset", 0), a.number("multiplier", 1), 0, 0, 0};
-  a.finish();
   model_.equalities.push_back(std::move(q));
 }
 

@@ -18,8 +18,14 @@ enum class Base {
   free
 };
 
+/// What was read for a mesh.
+struct FoundMesh {
+  FoundMesh(engine::Mesh m, std::string name = "") : mesh(std::move(m)), insteadOf(std::move(name)) {}
+  engine::Mesh mesh;
+  std::string insteadOf;  ///< the file that was taken in place of one that is not there; "": it is there
+};
 /// A mesh by the name that the file gives it. Throws Error.
-using ReadMesh = std::function<engine::Mesh(const std::string& file)>;
+using ReadMesh = std::function<FoundMesh(const std::string& file)>;
 
 /// A file that is XML with the element `robot`.
 class Document {
@@ -32,12 +38,15 @@ class Document {
   mjcf::File file_;
 };
 
-/// Reads a robot. What it does not take is named in `unsupported`. Throws Error with file:line:column. `document` must
-/// outlive the model.
+/// Reads a robot. What it does not take, mends or leaves out is named in `unsupported`. Throws Error with
+/// file:line:column for what is no robot. `document` must outlive the model.
 mjcf::Model readModel(const Document& document, Base base, const ReadMesh& readMesh, mjcf::Unsupported& unsupported);
 
 /// Names that a mesh `name` of a robot in the file `of` may have in the file system, the likeliest first. `name`:
-/// relative, or `package://NAME/...`, `model://NAME/...`, `file://...`.
+/// relative, or `package://NAME/...`, `model://NAME/...`, `file://...`, also with `$(find NAME)`.
 std::vector<std::string> meshNames(std::string_view of, std::string_view name);
+
+/// The folders and the file of such a name: "meshes", "arm.stl". Empty where it names no file.
+std::vector<std::string> partsOf(std::string_view name);
 
 }  // namespace spark::urdf

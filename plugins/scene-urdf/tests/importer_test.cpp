@@ -81,11 +81,43 @@ TEST_CASE("Meshes are found by the names of packages") {
   CHECK(h.text.empty());
 }
 
+TEST_CASE("A mesh that is not where its name says is looked for by its base name") {
+  UrdfHost h;
+  const auto robot = [](const std::string& mesh) {
+    return "<robot name='r'><link name='l'><inertial><mass value='1'/></inertial><collision><geometry>\n<mesh "
+           "filename='" +
+           mesh + "'/></geometry></collision></link></robot>";
+  };
+  std::filesystem::create_directories(h.folder.path() / "parts/left");
+  std::filesystem::create_directories(h.folder.path() / "parts/right");
+  for (const char* name : {"parts/left/Leg.obj", "parts/right/Leg.obj"}) h.folder.write(name, cube());
+  const std::vector<std::pair<std::string, std::string>> cases{
+      {"package://other/meshes/right/leg.OBJ", "parts/right/Leg.obj"},
+      {"file:///home/me/robots/left/Leg.obj", "parts/left/Leg.obj"},
+      {"C:\\robots\\right\\Leg.obj", "parts/right/Leg.obj"},
+      {"Leg.obj", "parts/left/Leg.obj"},
+  };
+  for (const auto& [name, found] : cases) {
+    h.text.clear();
+    h.import(robot(name));
+    CHECK_THAT(h.text,
+               Contains("r.urdf:2:1: the mesh '" + name + "' is not there: '" + found + "' is read in its place"));
+  }
+  h.text.clear();
+  h.import(robot("package://other/arm.obj"));
+  CHECK_THAT(h.text, Contains("there is no such file in the folders around 'r.urdf'") && Contains("--scene-path"));
+}
+
+TEST_CASE("What would be left out is an error with strict") {
+  UrdfHost h;
+  setProperty(*h.kernel.root().find("/sys/server/scene/urdf"), "strict", true);
+  CHECK_THROWS_WITH(h.import(kQuadruped),
+                    Contains("r.urdf:5:26:") && Contains("cannot read the mesh") && Contains("meshes/trunk.obj"));
+}
+
 TEST_CASE("A robot that cannot be read leaves the tree as it was") {
   UrdfHost h;
   const std::size_t before = h.scene.asNode()->children().size();
-  CHECK_THROWS_WITH(h.import(kQuadruped),
-                    Contains("r.urdf:5:26:") && Contains("cannot read the mesh") && Contains("meshes/trunk.obj"));
   CHECK_THROWS_WITH(h.import("<robot name='r'><link name='a'>"), Contains("r.urdf:1:"));
   CHECK(h.scene.asNode()->children().size() == before);
 }
