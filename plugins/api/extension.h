@@ -40,16 +40,23 @@ class IExtended {
 /// The world of a scene: it takes the blocks of what belongs to no single element.
 class IExtendedWorld {
  public:
-  SPARK_INTERFACE(IExtendedWorld, 1);
+  SPARK_INTERFACE(IExtendedWorld, 2);
   virtual ~IExtendedWorld() = default;
   virtual IExtended& blocks() = 0;
+  /// Sets the input of one of its blocks, see BlockInput: from the next step on, and without a change of the model. It
+  /// ends with the block.
+  virtual void setInput(std::uint64_t kind, double value) = 0;
 };
 
 /// The world of the scene that a node is in; nullptr: there is none.
-inline IExtended* worldAround(const Leaf& node) {
+inline IExtendedWorld* extendedWorldAround(const Leaf& node) {
   for (const Node* up = node.parent(); up; up = up->parent())
-    if (auto* world = up->childOf<IExtendedWorld>()) return &world->blocks();
+    if (auto* world = up->childOf<IExtendedWorld>()) return world;
   return nullptr;
+}
+inline IExtended* worldAround(const Leaf& node) {
+  IExtendedWorld* const world = extendedWorldAround(node);
+  return world ? &world->blocks() : nullptr;
 }
 
 /// A node with a block.

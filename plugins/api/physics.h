@@ -105,6 +105,15 @@ class IJoint {
   virtual bool feedback() const = 0;
 };
 
+/// An actuator with one control that is no controller of a joint: one that only the engine in use has. For effectors.
+class IActuator {
+ public:
+  SPARK_INTERFACE(IActuator, 1);
+  virtual ~IActuator() = default;
+  /// Sets its control, from the next step on. The actuator clamps it to its range.
+  virtual void setControl(double u) = 0;
+};
+
 /// A motor modelled as a device, with current, heat and stiffness. Offered beside IJoint by AngularMotor, for sensors
 /// and effectors.
 class IMotor {
@@ -137,10 +146,12 @@ class IBattery {
 /// Collision geometry. Offered by all collider classes.
 class ICollider {
  public:
-  SPARK_INTERFACE(ICollider, 1);
+  SPARK_INTERFACE(ICollider, 2);
   virtual ~ICollider() = default;
   /// The node that offers it.
   virtual Leaf& leaf() = 0;
+  /// Geom::id in the model of its world; 0: it has no geometry there.
+  virtual std::uint64_t identity() const { return 0; }
   /// The body that it moves with; nullptr: static.
   virtual IRigidBody* body() const = 0;
   /// Axis-aligned bounding box, world frame [m]; infinite for planes.

@@ -44,18 +44,54 @@ struct Motor {
 /// The motors of a joint, by axis.
 using Motors = std::array<Motor, 3>;
 
+/// A term of a controller with a range of its own: force - stiffness angle - damping rate, clamped. Units as in
+/// Control, but stiffness and damping may be of any sign.
+struct ControlTerm {
+  double force = 0, stiffness = 0, damping = 0;
+  double least = -HUGE_VAL, most = HUGE_VAL;
+  double at(double angle, double rate) const {
+    return std::max(least, std::min(most, force - stiffness * angle - damping * rate));
+  }
+};
+
 /// The controller of one axis of a joint, in place of its motor: a force of
 ///
-///     stiffness (position - angle) + damping (velocity - rate) + force,   at most maxForce,
+///     stiffness (position - angle) + damping (velocity - rate) + force + the terms,   at most maxForce,
 ///
 /// in each of an engine's own steps. Units as in JointAxis.
 struct Control {
+  static constexpr int kMaxTerms = 4;
   double stiffness = 0, damping = 0;  ///< kp [Nm/rad or N/m] and kd [N m s or N s/m], 0 or more
   double position = 0, velocity = 0;  ///< targets [rad and rad/s, or m and m/s]
   double force = 0;                   ///< feed-forward [Nm or N]; alone it is a motor that is given its torque
   double maxForce = HUGE_VAL;         ///< bound of the sum [Nm or N]
+  int termCount = 0;                  ///< of `terms`; 0 for most controllers
+  std::array<ControlTerm, kMaxTerms> terms{};
+  /// Appends a term. Returns false when there is no room.
+  bool add(const ControlTerm& term) {
+    if (termCount == kMaxTerms) return false;
+    terms[static_cast<std::size_t>(termCount++)] = term;
+    return true;
+  }
+  /// Adds a law to a controller whose targets are 0: as a term where it has a range, or a stiffness or
+  /// damping below 0. Returns false when there is no room for that, which it then does not have.
+  bool addLaw(const ControlTerm& law) {
+    const bool isTerm = std::isfinite(law.least) || std::isfinite(law.most) || law.stiffness < 0 || law.damping < 0;
+    if (isTerm && add(law)) return true;
+    stiffness += std::max(0.0, law.stiffness);
+    damping += std::max(0.0, law.damping);
+    force += law.force;
+    return !isTerm;
+  }
+  /// The sum of the terms.
+  double termsAt(double angle, double rate) const {
+    double sum = 0;
+    for (int i = 0; i < termCount; ++i) sum += terms[static_cast<std::size_t>(i)].at(angle, rate);
+    return sum;
+  }
   double at(double angle, double rate) const {
-    return std::clamp(stiffness * (position - angle) + damping * (velocity - rate) + force, -maxForce, maxForce);
+    const double own = stiffness * (position - angle) + damping * (velocity - rate) + force;
+    return std::clamp(termCount == 0 ? own : own + termsAt(angle, rate), -maxForce, maxForce);
   }
 };
 /// A controller and the axis that it acts on.
@@ -63,6 +99,12 @@ struct AxisControl {
   Index joint = kNone;
   int axis = 0;
   Control control;
+};
+
+/// A number that acts on the world through a block of its model, and changes without it: the control of an actuator.
+struct BlockInput {
+  std::uint64_t kind = 0;  ///< that of the block
+  double value = 0;
 };
 
 /// What a step measures at a joint with `wantsFeedback`: force [N] and torque about the body's centre [Nm] on a and b;
@@ -97,6 +139,7 @@ struct State {
   std::size_t turned = 0;      ///< number of joints with turns other than 0
   std::vector<Motors> motors;  ///< by joint
   std::vector<AxisControl> controls;
+  std::vector<BlockInput> inputs;  ///< of blocks of the world, in the order in which they were set first
   /// By body: DynamicState::version when saved state was loaded. Empty: none was, or bodies were removed since.
   std::vector<std::uint32_t> loaded;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.

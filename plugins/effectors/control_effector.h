@@ -22,6 +22,12 @@ class ControlEffector : public Effector {
         .unit("SI")
         .doc("Least position, rate and torque that count [rad, rad/s, Nm].");
     d.property("mostControls", &E::most_).unit("SI").doc("Largest position, rate and torque that count.");
+    d.property("leastForces", &E::leastForces_)
+        .unit("Nm")
+        .doc("Least force of each of the three parts; on a slider N.");
+    d.property("mostForces", &E::mostForces_)
+        .unit("Nm")
+        .doc("Largest force of each of the three parts; on a slider N.");
     d.property("reference", &E::reference_).unit("rad").doc("Angle in messages where the joint's is 0; on a slider m.");
   }
   std::string act(const Element& action) override {
@@ -34,25 +40,35 @@ class ControlEffector : public Effector {
     if (n[2] < 0 || n[3] < 0)
       return fmt::format("expected a stiffness and a damping of 0 or more, found {} and {}", n[2], n[3]);
     const double unit = joint->jointType() == engine::JointType::slider ? 1 : degToRad(1);
-    joint->control(0, {.stiffness = gears_[0] * gears_[0] * n[2],
-                       .damping = gears_[1] * gears_[1] * n[3],
-                       .position = limited(0, unit * n[0]) / gears_[0] - reference_,
-                       .velocity = limited(1, unit * n[1]) / gears_[1],
-                       .force = gears_[2] * limited(2, n[4]),
-                       .maxForce = maxForce_});
+    engine::Control law{.position = limited(0, unit * n[0]) / gears_[0] - reference_,
+                        .velocity = limited(1, unit * n[1]) / gears_[1],
+                        .force = std::max(leastForces_[2], std::min(mostForces_[2], gears_[2] * limited(2, n[4]))),
+                        .maxForce = maxForce_};
+    const double stiffness = gears_[0] * gears_[0] * n[2], damping = gears_[1] * gears_[1] * n[3];
+    if (isBounded(0))
+      law.add({stiffness * law.position, stiffness, 0, leastForces_[0], mostForces_[0]});
+    else
+      law.stiffness = stiffness;
+    if (isBounded(1))
+      law.add({damping * law.velocity, 0, damping, leastForces_[1], mostForces_[1]});
+    else
+      law.damping = damping;
+    joint->control(0, law);
     return read.remark();
   }
 
  private:
   double limited(int part, double v) const { return std::max(least_[part], std::min(most_[part], v)); }
+  bool isBounded(int part) const { return std::isfinite(leastForces_[part]) || std::isfinite(mostForces_[part]); }
   Link<IJoint> joint_;
   double maxForce_ = HUGE_VAL, reference_ = 0;
   Vec3 gears_{1, 1, 1}, least_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, most_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  Vec3 leastForces_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, mostForces_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
 };
 
 /// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - (stiffness + gainStiffness
 /// u) q - (damping + gainDamping u) dq, with the joint's position q and rate dq [SI units]. The forces of several
-/// actuators of one joint add up.
+/// actuators of one joint add up, each in its own range.
 class ActuatorEffector : public Effector {
   SPARK_CLASS(ActuatorEffector, Effector)
  public:
@@ -62,14 +78,16 @@ class ActuatorEffector : public Effector {
     d.link(&E::joint_, Above<IJoint>()).required(kNoJointAbove);
     d.property("gain", &E::gain_).unit("Nm").doc("Force per control; on a slider N.");
     d.property("bias", &E::bias_).unit("Nm").doc("Constant force; on a slider N.");
-    d.property("stiffness", &E::stiffness_).unit("Nm/rad").min(0).doc("Force per angle, against it; on a slider N/m.");
-    d.property("damping", &E::damping_).unit("N m s").min(0).doc("Force per rate, against it; on a slider N s/m.");
+    d.property("stiffness", &E::stiffness_).unit("Nm/rad").doc("Force per angle, against it; on a slider N/m.");
+    d.property("damping", &E::damping_).unit("N m s").doc("Force per rate, against it; on a slider N s/m.");
     d.property("gainStiffness", &E::gainStiffness_).unit("Nm/rad").doc("Stiffness per control.");
     d.property("gainDamping", &E::gainDamping_).unit("N m s").doc("Damping per control.");
     d.property("maxForce", &E::maxForce_)
         .unit("Nm")
         .min(0)
         .doc("Maximum force of the joint's actuators; on a slider N.");
+    d.property("leastForce", &E::leastForce_).unit("Nm").doc("Least force of this actuator; on a slider N.");
+    d.property("mostForce", &E::mostForce_).unit("Nm").doc("Largest force of this actuator; on a slider N.");
     d.property("least", &E::least_).unit("1").doc("Minimum control; smaller values are clamped to it.");
     d.property("most", &E::most_).unit("1").doc("Maximum control; larger values are clamped to it.");
     d.property("control", &E::control_).unit("1").state().doc("The control u.");
@@ -91,14 +109,33 @@ class ActuatorEffector : public Effector {
  private:
   void addTo(engine::Control& sum) const {
     const double u = std::max(least_, std::min(most_, control_));
-    sum.stiffness += std::max(0.0, stiffness_ + gainStiffness_ * u);
-    sum.damping += std::max(0.0, damping_ + gainDamping_ * u);
-    sum.force += gain_ * u + bias_;
     sum.maxForce = std::min(sum.maxForce, maxForce_);
+    sum.addLaw(
+        {gain_ * u + bias_, stiffness_ + gainStiffness_ * u, damping_ + gainDamping_ * u, leastForce_, mostForce_});
   }
   Link<IJoint> joint_;
   double gain_ = 1, bias_ = 0, stiffness_ = 0, damping_ = 0, gainStiffness_ = 0, gainDamping_ = 0, maxForce_ = HUGE_VAL,
-         least_ = -HUGE_VAL, most_ = HUGE_VAL, control_ = 0;
+         leastForce_ = -HUGE_VAL, mostForce_ = HUGE_VAL, least_ = -HUGE_VAL, most_ = HUGE_VAL, control_ = 0;
+};
+
+/// `(name u)`: sets the control of the actuator above it, one that only the engine in use has.
+class EngineActuatorEffector : public Effector {
+  SPARK_CLASS(EngineActuatorEffector, Effector)
+ public:
+  static void describe(Description<EngineActuatorEffector>& d) {
+    d.doc("Sets the control of the actuator above it, for instance a MujocoActuator: (name u).");
+    d.link(&EngineActuatorEffector::actuator_, Above<IActuator>()).required("expected an actuator above it");
+  }
+  std::string act(const Element& action) override {
+    IActuator* const actuator = actuator_.get();
+    if (!actuator) return "expected an actuator above it, found none";
+    NumberArguments read(action);
+    if (double u = 0; read(0, u)) actuator->setControl(u);
+    return read.remark();
+  }
+
+ private:
+  Link<IActuator> actuator_;
 };
 
 }  // namespace spark

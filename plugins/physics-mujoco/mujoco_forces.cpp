@@ -111,6 +111,22 @@ void MujocoWorld::passControls(const State& state) {
     m_->actuator_forcelimited[actuator] = std::isfinite(own.maxForce);
     m_->actuator_forcerange[2 * actuator] = -own.maxForce;
     m_->actuator_forcerange[2 * actuator + 1] = own.maxForce;
+    if (own.termCount == 0) continue;
+    // Each term has a range of its own: the actuator has their sum without ranges, whose damping is implicit, and what
+    // the ranges take away acts beside it.
+    engine::Control whole = own;
+    whole.maxForce = HUGE_VAL;
+    m_->actuator_forcelimited[actuator] = 0;
+    for (int k = 0; k < own.termCount; ++k) {
+      engine::ControlTerm& term = whole.terms[static_cast<std::size_t>(k)];
+      term.least = -HUGE_VAL, term.most = HUGE_VAL;
+      bias[0] += sign * term.force;
+      bias[1] -= term.stiffness;
+      bias[2] -= term.damping;
+    }
+    const int dof = m_->jnt_dofadr[joint];
+    const double angle = sign * d_->qpos[m_->jnt_qposadr[joint]], rate = sign * d_->qvel[dof];
+    d_->qfrc_applied[dof] += sign * (own.at(angle, rate) - whole.at(angle, rate));
   }
 }
 

@@ -64,6 +64,10 @@ void Collider::setPart(int part) {
   extend();
 }
 
+std::uint64_t Collider::identity() const {
+  return world() && geom_ != physics::GeomHandle::none ? world()->model().geoms[world()->index(geom_)].id : 0;
+}
+
 void Collider::setBlock(const engine::Block& block) {
   blocks_.set(block);
   extend();

@@ -25,6 +25,7 @@ class Collider : public PhysicsObject,
 
   static void describe(Description<Collider>& d);
   Leaf& leaf() override { return *this; }
+  std::uint64_t identity() const override;
   IRigidBody* body() const override { return body_.get(); }
   void bounds(Vec3& low, Vec3& high) const override;
   std::optional<engine::ShapeDescription> shape() const override { return std::nullopt; }

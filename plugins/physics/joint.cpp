@@ -74,6 +74,11 @@ void Joint::describe(Description<Joint>& d) {
       .doc(
           "Puts a controller in place of the axis' motor: stiffness (position - angle) + damping (velocity - rate) + "
           "force, at most maxForce; of a slider m and N.");
+  d.method("addControllerTerm", &J::addControllerTerm)
+      .parameters({"axis", "force [Nm]", "stiffness [Nm/rad]", "damping [N m s/rad]", "least [Nm]", "most [Nm]"})
+      .doc(
+          "Adds a term with a range of its own to the axis' controller: force - stiffness angle - damping rate; up to "
+          "four.");
   d.implements<engine::IExtended>();
   d.property("jointMaxSpeed1", &J::maxSpeed1, &J::setMaxSpeed1)
       .unit("rad/s")
@@ -237,6 +242,15 @@ void Joint::setController(int axis, double stiffness, double damping, double pos
   control(axis, {stiffness, damping, position, velocity, force, maxForce});
 }
 
+void Joint::addControllerTerm(int axis, double force, double stiffness, double damping, double least, double most) {
+  expectAxis(axis);
+  const engine::Control* const present = world() ? world()->controlOf(joint_, axis) : nullptr;
+  engine::Control c = present ? *present : engine::Control{};
+  if (!c.add({force, stiffness, damping, least, most}))
+    throw Error(fmt::format("{}: expected at most {} terms of a controller", path(), engine::Control::kMaxTerms));
+  control(axis, c);
+}
+
 void Joint::enableFeedback(bool on) {
   feedback_ = on;
   if (world()) world()->setFeedback(joint_, on);
@@ -250,9 +264,14 @@ void Joint::saveState(StateWriter& out) const {
   }
   for (int axis = 0; axis < axes(); ++axis) {
     const engine::Control* c = world() ? world()->controlOf(joint_, axis) : nullptr;
-    out.write(c != nullptr);
+    // 0: no controller; else its number of terms and 1.
+    out.write(std::int64_t{c ? 1 + c->termCount : 0});
     if (!c) continue;
     for (const double v : {c->stiffness, c->damping, c->position, c->velocity, c->force, c->maxForce}) out.write(v);
+    for (int i = 0; i < c->termCount; ++i) {
+      const engine::ControlTerm& t = c->terms[static_cast<std::size_t>(i)];
+      for (const double v : {t.force, t.stiffness, t.damping, t.least, t.most}) out.write(v);
+    }
   }
   for (int axis = 0; axis < axes(); ++axis) out.write(world() ? world()->at(joint_).coordinate(axis) : 0.0);
 }
@@ -261,9 +280,15 @@ void Joint::loadState(StateReader& in) {
   for (int axis = 0; axis < axes(); ++axis)
     for (int p = 0; p < kSavedParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
   for (int axis = 0; axis < axes(); ++axis) {
-    if (!in.readBool()) continue;
+    const std::int64_t written = in.readInteger();
+    if (written == 0) continue;
     engine::Control c;
     for (double* v : {&c.stiffness, &c.damping, &c.position, &c.velocity, &c.force, &c.maxForce}) *v = in.readNumber();
+    for (std::int64_t i = 1; i < written; ++i) {
+      engine::ControlTerm t;
+      for (double* v : {&t.force, &t.stiffness, &t.damping, &t.least, &t.most}) *v = in.readNumber();
+      c.add(t);
+    }
     if (world()) world()->control(joint_, axis, c);
   }
   for (int axis = 0; axis < axes(); ++axis) {

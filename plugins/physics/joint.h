@@ -123,6 +123,7 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended, pub
   std::pair<double, double> springOf(int axis) const;
   void setController(int axis, double stiffness, double damping, double position, double velocity, double force,
                      double maxForce);
+  void addControllerTerm(int axis, double force, double stiffness, double damping, double least, double most);
   void attach(std::string first, std::string second);
   /// The body at a path relative to the joint; empty, with a warning, when there is none.
   Ref<RigidBody> bodyAt(const std::string& path);

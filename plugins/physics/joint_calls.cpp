@@ -122,6 +122,10 @@ void Joint::addParameterCalls(std::vector<SceneCall>& calls, int axis) const {
   if (const engine::Control* c = controller)
     calls.push_back(
         {"setController", {axis, c->stiffness, c->damping, c->position, c->velocity, c->force, c->maxForce}});
+  for (int i = 0; controller && i < controller->termCount; ++i) {
+    const engine::ControlTerm& t = controller->terms[static_cast<std::size_t>(i)];
+    calls.push_back({"addControllerTerm", {axis, t.force, t.stiffness, t.damping, t.least, t.most}});
+  }
 }
 
 }  // namespace spark

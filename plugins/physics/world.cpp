@@ -71,7 +71,13 @@ void World::setBlock(const engine::Block& block) {
 
 void World::removeBlock(std::uint64_t kind) {
   blocks_.remove(kind);
-  if (model_) model_->setBlocks(blocks_);
+  if (!model_) return;
+  model_->setBlocks(blocks_);
+  model_->endInput(kind);
+}
+
+void World::setInput(std::uint64_t kind, double value) {
+  if (model_) model_->setInput(kind, value);
 }
 
 World& World::of(const Leaf& node) {

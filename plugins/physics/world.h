@@ -45,6 +45,7 @@ class World : public PhysicsObject, public engine::IExtended, public engine::IEx
   void setBlock(const engine::Block& block) override;
   void removeBlock(std::uint64_t kind) override;
   engine::IExtended& blocks() override { return *this; }
+  void setInput(std::uint64_t kind, double value) override;
 
  protected:
   void onLink() override;

@@ -103,6 +103,11 @@ void WorldModel::control(JointHandle joint, int axis, const engine::Control& wan
   if (axis < 0 || axis >= axesOf(j.type) || !inRange(numbers, 5) || wanted.stiffness < 0 || wanted.damping < 0 ||
       !(wanted.maxForce >= 0))
     return;
+  for (int i = 0; i < wanted.termCount; ++i) {
+    const engine::ControlTerm& t = wanted.terms[static_cast<std::size_t>(i)];
+    const double term[] = {t.force, t.stiffness, t.damping};
+    if (!inRange(term, 3) || !(t.least <= t.most)) return;
+  }
   if (Index& at = controlAt_[index][axis]; at == kNone) {
     at = static_cast<Index>(state_.controls.size());
     state_.controls.push_back({index, axis, wanted});

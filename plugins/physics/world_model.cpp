@@ -351,6 +351,16 @@ void WorldModel::setBlocks(const engine::Blocks& blocks) {
   ++model_.dynamics;
 }
 
+void WorldModel::setInput(std::uint64_t kind, double value) {
+  for (engine::BlockInput& input : state_.inputs)
+    if (input.kind == kind) return void(input.value = value);
+  state_.inputs.push_back({kind, value});
+}
+
+void WorldModel::endInput(std::uint64_t kind) {
+  std::erase_if(state_.inputs, [kind](const engine::BlockInput& input) { return input.kind == kind; });
+}
+
 void WorldModel::setBlocks(GeomHandle geom, const engine::Blocks& blocks) {
   engine::Blocks& own = model_.extensions.geoms[geoms_[geom]];
   if (blocks.empty() && own.empty()) return;

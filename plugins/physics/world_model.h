@@ -109,6 +109,9 @@ class WorldModel {
   void setPart(GeomHandle geom, int part);
   /// What single engines know: see Model::extensions.
   void setBlocks(const engine::Blocks& blocks);
+  /// Sets the input of a block of the world; endInput() takes it back.
+  void setInput(std::uint64_t kind, double value);
+  void endInput(std::uint64_t kind);
   void setBlocks(GeomHandle geom, const engine::Blocks& blocks);
   void setBlocks(JointHandle joint, const engine::Blocks& blocks);
   /// False: the geom is left out of detect(). True by default.

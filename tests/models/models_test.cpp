@@ -5,6 +5,9 @@
 // bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names. A reason that begins with "rounding:
 // " is checked: MuJoCo alone does not agree with itself when it starts 1e-15 beside.
 //
+// SPARK_MODEL=path runs one other file, whatever lies around it: its bodies are compared by their order, and what has
+// no name is left out otherwise. `test-models "[file]"` prints the row of that file.
+//
 // With the other engines, whose laws of contacts and integration are not MuJoCo's, they must agree to 5 mm and 5 mrad
 // after 0.1 s, or engines.txt says why not.
 
@@ -28,7 +31,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kFolder = SPARK_SOURCES "/tests/models";
+/// The file to run alone; "": all of this folder.
+const std::string kAlone = std::getenv("SPARK_MODEL") ? std::getenv("SPARK_MODEL") : "";
+const fs::path kFolder = kAlone.empty() ? fs::path(SPARK_SOURCES "/tests/models") : fs::path("/");
 constexpr double kTimes[] = {0.1, 0.5, 1};
 constexpr double kTolerance = 1e-6, kControl = 0.3;
 
@@ -79,6 +84,7 @@ struct Oracle {
 
   std::string nameOf(int type, int id) const {
     const char* const name = mj_id2name(m, type, id);
+    if ((!name || !*name) && !kAlone.empty()) return "";
     if (!name || !*name) throw Error(fmt::format("the object {} of type {} has no name", id, mju_type2Str(type)));
     return treeName(name);
   }
@@ -105,7 +111,7 @@ struct Oracle {
     Snapshot s;
     for (int j = 0; j < m->njnt; ++j)
       if (m->jnt_type[j] == mjJNT_HINGE || m->jnt_type[j] == mjJNT_SLIDE)
-        s.joints[nameOf(mjOBJ_JOINT, j)] = d->qpos[m->jnt_qposadr[j]] - m->qpos0[m->jnt_qposadr[j]];
+        s.joints[nameOf(mjOBJ_JOINT, j)] += d->qpos[m->jnt_qposadr[j]] - m->qpos0[m->jnt_qposadr[j]];
     for (int b = 1; b < m->nbody; ++b) {
       if (m->body_dofnum[b] == 0) continue;
       double mass = 0;
@@ -116,8 +122,10 @@ struct Oracle {
         center += m->body_mass[k] * Vec3(d->xipos + 3 * k);
       }
       const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> rotation(d->xmat + 9 * b);
-      s.bodies[nameOf(mjOBJ_BODY, b)] = {center / mass, rotation};
+      const std::string name = kAlone.empty() ? nameOf(mjOBJ_BODY, b) : fmt::format("#{:04}", s.bodies.size());
+      s.bodies[name] = {center / mass, rotation};
     }
+    s.joints.erase("");
     return s;
   }
 };
@@ -155,7 +163,7 @@ struct ModelHost : TestHost {
     };
     for (Effector* e : effectors) {
       const std::string& name = e->messageName();
-      const std::string text = e->classObject()->name() == "ActuatorEffector"
+      const std::string text = e->classObject()->name().ends_with("ActuatorEffector")
                                    ? fmt::format("(a {})", kControl)
                                    : fmt::format("(a {0} {0} {1} {2} {3})", radToDeg(kControl), gain(name + "_pos"),
                                                  gain(name + "_vel"), kControl);
@@ -190,7 +198,10 @@ struct ModelHost : TestHost {
       if (j->axes() == 1) s.joints[j->leaf().name()] = j->angle(0);
     for (IRigidBody* b : bodies) {
       const engine::BodyState state = b->state();
-      s.bodies[b->leaf().parent()->name()] = {state.position, state.rotation};
+      if (kAlone.empty())
+        s.bodies[b->leaf().parent()->name()] = {state.position, state.rotation};
+      else if (!getProperty(b->leaf(), "connector").toBool())
+        s.bodies[fmt::format("#{:04}", s.bodies.size())] = {state.position, state.rotation};
     }
     return s;
   }
@@ -214,8 +225,11 @@ void compare(const Snapshot& expected, const Snapshot& found, double time, Resul
   };
   for (const auto& [name, q] : expected.joints) {
     const auto own = found.joints.find(name);
+    if (own == found.joints.end() && !kAlone.empty()) continue;
     note(own == found.joints.end() ? HUGE_VAL : std::abs(own->second - q), "joint " + name);
   }
+  if (expected.bodies.size() != found.bodies.size() && !kAlone.empty())
+    note(HUGE_VAL, fmt::format("{} bodies in place of {}", found.bodies.size(), expected.bodies.size()));
   for (const auto& [name, pose] : expected.bodies) {
     const auto own = found.bodies.find(name);
     const bool none = own == found.bodies.end();
@@ -329,6 +343,14 @@ TEST_CASE("Models in MJCF move nearly as in MuJoCo with the other engines, or a 
     if (row != rows.end()) rows.erase(row);
   }
   for (const auto& [file, why] : rows) FAIL_CHECK("engines.txt has a row for " << file << ", which is not there");
+}
+
+TEST_CASE("The model in SPARK_MODEL moves as in MuJoCo alone", "[.file]") {
+  REQUIRE_FALSE(kAlone.empty());
+  const Result r = resultOf(kAlone, "MujocoEngine", kTimes);
+  fmt::print("{} | {} | {} | {:.1e} {} | {}\n", kAlone, r.loads ? "loads" : "REFUSED", r.agrees ? "agrees" : "DIFFERS",
+             r.worst, r.agrees ? "" : r.where, fmt::join(r.named, "; "));
+  if (!r.agrees) fmt::print("rounding {} {:.1e}\n", kAlone, roundingOf(kAlone).worst);
 }
 
 }  // namespace spark::test

@@ -15,6 +15,12 @@ bool isLimited(const std::array<double, 2>& range) { return std::isfinite(range[
 /// As std::clamp, for ranges of any order.
 double clampTo(const std::array<double, 2>& range, double v) { return std::max(range[0], std::min(range[1], v)); }
 
+/// The range of an actuator's force along its joint.
+std::array<double, 2> jointRange(const Actuator& x) {
+  const double a = x.gear * x.forceRange[0], b = x.gear * x.forceRange[1];
+  return {std::min(a, b), std::max(a, b)};
+}
+
 /// True when the force depends on the joint's position or rate.
 bool hasFeedback(const Actuator& x) { return x.gain[1] != 0 || x.gain[2] != 0 || x.bias[1] != 0 || x.bias[2] != 0; }
 
@@ -53,10 +59,12 @@ void ActuatorBuilder::onJoint(const Actuators& all, const Construction::MadeJoin
     if (!law) continue;
     law->maxForce = std::min(law->maxForce, on.joint->maxForce);
     const double u = std::max(law->least, std::min(law->most, 0.0));
-    sum.stiffness += law->stiffness + law->gainStiffness * u;
-    sum.damping += law->damping + law->gainDamping * u;
-    sum.force += law->bias + law->gain * u;
     sum.maxForce = std::min(sum.maxForce, law->maxForce);
+    if (!sum.addLaw({law->bias + law->gain * u, law->stiffness + law->gainStiffness * u,
+                     law->damping + law->gainDamping * u, law->leastForce, law->mostForce}))
+      c_.unsupported.add(x->from, fmt::format("{} is one of more than {} actuators of a joint with force ranges, or "
+                                              "that drive it away from a target: it has no range, and does not",
+                                              x->from.named(), engine::Control::kMaxTerms));
     makeActuator(*x, *law, on);
   }
   on.made->control(0, sum);
@@ -87,23 +95,12 @@ std::optional<ActuatorBuilder::Law> ActuatorBuilder::lawOf(const Actuator& x, co
   const bool feedback = hasFeedback(x);
   const std::array<double, 2> range = feedback ? controlRange(x) : constantRange(x);
   law.least = range[0], law.most = range[1];
-  const auto refuse = [&](const char* why) { c_.unsupported.add(x.from, x.from.named() + why); };
   if (!feedback && x.gain[0] == 0) law.bias = gear * clampTo(x.forceRange, x.bias[0]);
-  if (feedback && isLimited(x.forceRange)) {
-    if (alone)
-      law.maxForce = std::abs(gear) * std::max(std::abs(x.forceRange[0]), std::abs(x.forceRange[1]));
-    else
-      refuse(" has a force range beside other actuators of its joint, which is not supported: its force is unlimited");
-    if (alone && x.forceRange[0] != -x.forceRange[1])
-      refuse(" has a force range that is not symmetric, which is not supported: it is taken as symmetric");
-  }
-  const auto least = [&](double constant, double perControl) {
-    return perControl == 0 ? constant : constant + std::min(perControl * law.least, perControl * law.most);
-  };
-  if (least(law.stiffness, law.gainStiffness) < 0 || least(law.damping, law.gainDamping) < 0) {
-    refuse(" drives its joint away from a target, or speeds it up, which is not supported");
-    return std::nullopt;
-  }
+  if (!feedback || !isLimited(x.forceRange)) return law;
+  if (alone && x.forceRange[0] == -x.forceRange[1])
+    law.maxForce = std::min(law.maxForce, std::abs(gear) * x.forceRange[1]);
+  else
+    law.leastForce = jointRange(x)[0], law.mostForce = jointRange(x)[1];
   return law;
 }
 
@@ -131,20 +128,25 @@ std::optional<ActuatorBuilder::Parts> ActuatorBuilder::partsOf(const Actuators& 
 }
 
 void ActuatorBuilder::makeController(const Parts& p, const Construction::MadeJoint& on) {
-  for (const Actuator* x : {p.position, p.velocity})
-    if (isLimited(x->forceRange))
-      c_.unsupported.add(x->from, x->from.named() +
-                                      " has a force range beside other actuators of its joint, which is "
-                                      "not supported: its force is unlimited");
   const double g = p.position->gear, h = p.velocity->gear, t = p.torque->gear * p.torque->gain[0];
   const std::array<double, 2> angle = controlRange(*p.position), rate = controlRange(*p.velocity),
                               torque = constantRange(*p.torque);
-  on.made->control(0, {.stiffness = g * g * p.position->gain[0],
-                       .damping = h * h * p.velocity->gain[0],
-                       .position = clampTo(angle, 0) / g - on.joint->reference,
-                       .velocity = clampTo(rate, 0) / h,
-                       .force = t * clampTo(torque, 0),
-                       .maxForce = on.joint->maxForce});
+  engine::Control law{.position = clampTo(angle, 0) / g - on.joint->reference,
+                      .velocity = clampTo(rate, 0) / h,
+                      .force = t * clampTo(torque, 0),
+                      .maxForce = on.joint->maxForce};
+  const double stiffness = g * g * p.position->gain[0], damping = h * h * p.velocity->gain[0];
+  // The range of a torque without feedback is that of its control.
+  const std::array<double, 2> byPosition = jointRange(*p.position), byRate = jointRange(*p.velocity);
+  if (isLimited(byPosition))
+    law.add({stiffness * law.position, stiffness, 0, byPosition[0], byPosition[1]});
+  else
+    law.stiffness = stiffness;
+  if (isLimited(byRate))
+    law.add({damping * law.velocity, 0, damping, byRate[0], byRate[1]});
+  else
+    law.damping = damping;
+  on.made->control(0, law);
   if (!c_.has("ControlEffector")) return;
   const std::string name = p.position->name.substr(0, p.position->name.size() - 4);
   Leaf& effector = makeEffector("ControlEffector", name, on, p.position->from);
@@ -152,6 +154,8 @@ void ActuatorBuilder::makeController(const Parts& p, const Construction::MadeJoi
   setProperty(effector, "gears", toList(Vec3(g, h, t)));
   setProperty(effector, "leastControls", toList(Vec3(angle[0], rate[0], torque[0])));
   setProperty(effector, "mostControls", toList(Vec3(angle[1], rate[1], torque[1])));
+  setProperty(effector, "leastForces", toList(Vec3(byPosition[0], byRate[0], -HUGE_VAL)));
+  setProperty(effector, "mostForces", toList(Vec3(byPosition[1], byRate[1], HUGE_VAL)));
   setProperty(effector, "reference", on.joint->reference);
 }
 
@@ -165,6 +169,8 @@ void ActuatorBuilder::makeActuator(const Actuator& x, const Law& law, const Cons
   setProperty(effector, "gainStiffness", law.gainStiffness);
   setProperty(effector, "gainDamping", law.gainDamping);
   setProperty(effector, "maxForce", law.maxForce);
+  setProperty(effector, "leastForce", law.leastForce);
+  setProperty(effector, "mostForce", law.mostForce);
   setProperty(effector, "least", law.least);
   setProperty(effector, "most", law.most);
 }

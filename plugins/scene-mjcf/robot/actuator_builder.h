@@ -19,8 +19,9 @@ class ActuatorBuilder {
   /// gain u + bias - (stiffness + gainStiffness u) q - (damping + gainDamping u) dq.
   struct Law {
     double gain = 0, bias = 0, stiffness = 0, damping = 0, gainStiffness = 0, gainDamping = 0;
-    double least = -HUGE_VAL, most = HUGE_VAL;  ///< range of u
-    double maxForce = HUGE_VAL;                 ///< of the whole force
+    double least = -HUGE_VAL, most = HUGE_VAL;            ///< range of u
+    double leastForce = -HUGE_VAL, mostForce = HUGE_VAL;  ///< range of the whole force
+    double maxForce = HUGE_VAL;                           ///< of all actuators of the joint
   };
   /// The actuators of a controller: NAME_pos, NAME_vel and NAME_tau.
   struct Parts {
