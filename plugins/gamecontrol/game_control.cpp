@@ -77,14 +77,16 @@ void GameControl::describe(Description<GameControl>& d) {
       .unit("s")
       .min(0)
       .doc(
-          "Lockstep: until an agent that joins has its first percepts, a cycle waits for others no longer than this "
-          "(wall time).");
+          "Lockstep: until an agent that joins has its first percepts, a cycle waits for others no longer than this; "
+          "an "
+          "agent that has not sent (syn) yet is waited for as long, and once more for each of its answers (wall "
+          "time).");
   d.property("joinPace", &GameControl::joinPace_)
       .unit("s")
       .min(0)
       .doc(
-          "Lockstep: minimum duration of a cycle while a new agent, or all agents, have not sent (syn) yet (wall "
-          "time).");
+          "Lockstep: silence after which the answer of an agent that has not sent (syn) yet is complete, and minimum "
+          "duration of a cycle for one that does not answer (wall time).");
   d.property("idleLimit", &GameControl::idleLimit_)
       .unit("s")
       .min(0)
@@ -194,11 +196,15 @@ std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& req
 
 bool GameControl::ready(bool lockstep) {
   resolveParsers();
+  const bool waits = (lockstep || sync_) && cyclesToTurn_ == 0;
+  if (!holding() && !waits) return true;
+  const auto at = now();
+  const auto last = lookedAt_ == Clock::time_point() ? at : lookedAt_;
+  lookedAt_ = at;
   if (holding())
-    return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get(), now()},
+    return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get(), last},
                         kernel().log());
-  if ((!lockstep && !sync_) || cyclesToTurn_ > 0) return true;
-  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_}, now());
+  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_}, {at, last}, agentLog());
 }
 
 void GameControl::closeWithoutRobot() {
@@ -236,7 +242,7 @@ bool GameControl::realTime() const {
 void GameControl::act(const Event& event) {
   const InUse acting(*this, "agents act just now");
   cycle_ = event.cycle;
-  actedAt_ = now();
+  lookedAt_ = actedAt_ = now();
   lockstep_.beginCycle(actedAt_);
   loads_ = 0;
   closeWithoutRobot();
@@ -264,14 +270,13 @@ void GameControl::takeTurn(const Event& event) {
       if (p->connection() && !p->leaving()) resume(gamecontrol::vacantNamed(participants_, *p, *joinPolicy_), *p);
 
   // Actions that came since the last turn depart, percepts arrive, then actions take effect.
-  for (const auto& p : participants_)
+  for (const auto& p : participants_) {
+    p->countAnswer(lockstep_.hasBudget());
     p->depart(cycle_, p->aspect() ? timing().latencies(*p->aspect()) : AgentLatencies());
+  }
   deliver();
   activeJudges_.update(judges_);
-  for (std::size_t i = 0; i < participants_.size(); ++i) {
-    if (lockstep_.hasBudget()) participants_[i]->countAnswer();
-    participants_[i]->execute(agentLog(), event, activeJudges_);
-  }
+  for (std::size_t i = 0; i < participants_.size(); ++i) participants_[i]->execute(agentLog(), event, activeJudges_);
 }
 
 void GameControl::sense(const Event& event) {

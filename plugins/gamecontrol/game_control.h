@@ -125,7 +125,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   bool isTurn_ = true;       ///< agents act and sense in this cycle
   std::uint64_t round_ = 0;  ///< number of the sense phase
   TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;
-  Clock::time_point actedAt_{};  ///< when the last act phase began
+  Clock::time_point actedAt_{};   ///< when the last act phase began
+  Clock::time_point lookedAt_{};  ///< when ready() or act() began last; input has been read since
 };
 
 }  // namespace spark

@@ -42,7 +42,7 @@ class Hold {
     double startAfter;          ///< time without progress after which the match starts anyway; 0: never
     double reportEvery;         ///< between two log lines
     const IJoinPolicy* policy;  ///< the game's; nullptr: agents have no identity
-    Clock::time_point now;
+    Clock::time_point now;      ///< what was sent until then has been received
   };
   /// Updates Participant::held(). Call it after each message of `p` during the hold.
   static void onMessage(Participant& p, const IJoinPolicy* policy);

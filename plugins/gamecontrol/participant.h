@@ -173,18 +173,24 @@ class Participant {
   // ---- lockstep ----
 
   /// Lockstep waits for it: it can answer percepts with a sync predicate, was sent some, and has sent that predicate
-  /// before.
-  bool mustSync() const { return canSync() && lockstep_.pledged(); }
-  /// As mustSync(), but it has not sent a sync predicate: it gets percepts in every cycle and is not waited for.
-  bool observes() const { return canSync() && !lockstep_.pledged(); }
+  /// before or answered every message so far.
+  bool mustAnswer() const { return canSync() && lockstep_.attentive(); }
+  /// It can answer percepts with a sync predicate, and had not sent that predicate before this cycle's percepts.
+  bool observes() const { return canSync() && !lockstep_.bound(); }
+  /// It has ever sent a sync predicate.
+  bool pledged() const { return lockstep_.pledged(); }
   /// It has answered all messages of this cycle.
-  bool synced() const { return lockstep_.synced(); }
+  bool answered() const { return lockstep_.answered(); }
+  /// Number of cycles that it has answered.
+  int answers() const { return lockstep_.answers(); }
   /// True for agents that the start of the match waited for.
   bool expected() const { return lockstep_.expected(); }
   /// Lockstep waits for it without a budget.
   bool trusted() const { return inside_ || lockstep_.trusted(); }
-  /// Counts its answer to the last cycle. Call it before execute().
-  void countAnswer() { lockstep_.countAnswer(); }
+  /// Counts its answer to the last turn. Call it before depart(). `trust`: it counts for trust.
+  void countAnswer(bool trust) { lockstep_.countAnswer(trust); }
+  /// It did not answer in time: unless it has sent a sync predicate it is not waited for.
+  void giveUp() { lockstep_.giveUp(); }
   /// It delayed others for too long; see LockstepRecord.
   void distrust() { lockstep_.distrust(); }
 

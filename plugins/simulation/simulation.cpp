@@ -229,8 +229,10 @@ bool Simulation::collectInput() {
     waited = true;
   }
   if (stopping()) return false;
+  // In lockstep everything counts that was sent before the answer that opened the last gate, at whatever port: the poll
+  // that read the answer may have looked at another port too early.
+  if (waited || sync_) poll();
   if (waited) {
-    poll();
     // Waiting for agents is no lost time.
     due_ = std::max(due_, Clock::now());
     startDue_ = std::max(startDue_, Clock::now());

@@ -194,6 +194,15 @@ TEST_CASE("A cycle waits until all gates are open, then polls its input once mor
   REQUIRE(f.loop->time() == Approx(0.02));
 }
 
+TEST_CASE("In lockstep input is polled once more though no gate was closed, since ports are polled one by one") {
+  LoopFixture f;
+  auto& source = f.host.kernel.create<Batches>("Batches", "/sys/server/net");
+  const bool sync = GENERATE(true, false);
+  setProperty(*f.simulation, "sync", sync);
+  f.runCycles(1);
+  REQUIRE(source.log == (sync ? "pp" : "p"));
+}
+
 TEST_CASE("A cycle may remove the source that the loop would wait in") {
   LoopFixture f;
   f.host.kernel.registerClass<Removed>();
