@@ -40,11 +40,11 @@ def last_check(*modes):
     return mode, (REPORTS / f"summary-{mode}").read_text().strip(), stages
 
 
-def tests(*patterns, environment=None):
-    """Runs the ctest programs of the release build whose names match; each pattern must match one."""
+def tests(*patterns, environment=None, before=(), jobs=1):
+    """Runs the ctest programs of the release build whose names match, `jobs` at once; each pattern must match one. `before`: words such as nice."""
     with tempfile.NamedTemporaryFile(suffix=".xml") as report:
         say("Testing " + ", ".join(patterns))
-        subprocess.run(["ctest", "--preset", "release", "-R", "^(" + "|".join(patterns) + ")$", "--output-junit", report.name], cwd=ROOT, stdout=sys.stderr, env={**os.environ, **(environment or {})})
+        subprocess.run([*before, "ctest", "--preset", "release", "-j", str(jobs), "-R", "^(" + "|".join(patterns) + ")$", "--output-junit", report.name], cwd=ROOT, stdout=sys.stderr, env={**os.environ, **(environment or {})})
         cases = list(xml.parse(report.name).getroot().iter("testcase"))
     names = [c.get("name") for c in cases]
     skipped = [c.get("name") for c in cases if c.find("skipped") is not None]

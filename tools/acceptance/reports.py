@@ -3,6 +3,7 @@ import os
 import sys
 
 from acceptance.common import BIN, FAIL, PASS, ROOT, tests
+from acceptance.fresh import busy
 
 sys.path.append(str(ROOT / "tests/reports"))
 import run as reports  # noqa: E402
@@ -22,6 +23,17 @@ def table():
     return measured, FAIL if bad or missing else PASS
 
 
+# The programs that replay recorded sessions.
+SESSIONS = ("conformance-.*", "protocol-messages-.*", "system-captures", "monitor-captures")
+
+
+def sessions():
+    """All recorded sessions at once, with the lowest priority beside two busy loops."""
+    with busy(2):
+        return tests(*SESSIONS, before=("nice", "-n", "19"), jobs=100)
+
+
 POINTS = {
     "1": ("rows 1 to 15 and 25", table),
+    "2": ("recorded sessions, all at once beside two busy loops", sessions),
 }
