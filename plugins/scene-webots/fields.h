@@ -11,15 +11,17 @@
 namespace spark::webots {
 
 /// Reads the fields of one node. What is read is known; finish() names the others. A field with NULL, or without a
-/// value, is not there. All functions throw Error, with the place of the field, for a value of another type.
+/// value, is not there. One with a value of another type is named, and as if it were not there.
 class Fields {
  public:
   /// Both must outlive this.
   Fields(const Node& node, mjcf::Unsupported& unsupported) : node_(node), unsupported_(unsupported) {}
   const Node& node() const { return node_; }
   mjcf::Element element() const { return node_.element(); }
-  /// The place of a field, or of the node where it is not there, and a text.
+  /// The place of a field, or of the node where it is not there, and a text, to be thrown.
   Error error(const char* name, const std::string& text) const;
+  /// Names what is wrong about a field, or about the node where it is not there.
+  void wrong(const char* name, const std::string& text) const;
 
   double number(const char* name, double otherwise);
   /// A number that is at least `least`.
@@ -45,8 +47,8 @@ class Fields {
 
  private:
   const Field* find(const char* name);
-  const std::vector<double>& exactly(const Field& field, std::size_t count, const char* what) const;
-  Error expected(const Field& field, const std::string& what) const;
+  const std::vector<double>* exactly(const char* name, std::size_t count, const char* what);
+  void expected(const Field& field, const std::string& what) const;
 
   const Node& node_;
   mjcf::Unsupported& unsupported_;

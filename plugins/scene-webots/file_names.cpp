@@ -5,7 +5,7 @@
 
 namespace spark::webots {
 
-std::vector<std::string> fileNames(std::string_view of, std::string_view url) {
+std::vector<std::string> fileNames(std::string_view of, std::string_view url, const std::vector<std::string>& folders) {
   namespace fs = std::filesystem;
   std::vector<std::string> out;
   const auto add = [&out](const fs::path& path) {
@@ -32,6 +32,11 @@ std::vector<std::string> fileNames(std::string_view of, std::string_view url) {
     add(up / name);
     add(up / "protos" / name);
     if (up.empty() || up == up.parent_path()) break;
+  }
+  for (const fs::path other : folders) {
+    if (!relative) add(other / url);
+    add(other / name);
+    add(other / "protos" / name);
   }
   return out;
 }

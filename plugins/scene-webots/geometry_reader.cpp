@@ -35,16 +35,19 @@ void GeometryReader::shape(const Node& node, const Frame& frame, mjcf::Body& bod
   f.ignore({"castShadows", "isPickable", "name"});
   mjcf::Geom g;
   g.from = node.element();
-  g.pose = frame.pose;
   g.contactTypes = g.contactAffinities = 0;
   if (const Node* const appearance = f.child("appearance")) g.color = colorOf(*appearance);
   const Node* const geometry = f.child("geometry");
   f.finish();
   if (!geometry) return;
-  auto shape = this->geometry(*geometry, frame, false);
-  if (!shape) return;
-  g.shape = std::move(*shape);
-  body.geoms.push_back(std::move(g));
+  const Frame standing = webots::standing(*geometry, frame);
+  g.pose = standing.pose;
+  r_.leaveOut(*geometry, "a shape", [&] {
+    auto shape = this->geometry(*geometry, standing, false);
+    if (!shape) return;
+    g.shape = std::move(*shape);
+    body.geoms.push_back(std::move(g));
+  });
 }
 
 void GeometryReader::bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body) {
@@ -52,24 +55,29 @@ void GeometryReader::bounds(const Node& node, const Frame& frame, double density
   if (node.type != "Shape" && !isGroup(node.type)) return addBounds(node, frame, density, body);
   Fields f(node, r_.unsupported);
   if (node.type == "Shape") {
+    f.ignore({"appearance", "castShadows", "isPickable", "name"});
     if (const Node* const geometry = f.child("geometry")) addBounds(*geometry, frame, density, body);
-    return;
+  } else {
+    const Frame inside = frameIn(frame, f);
+    for (const NodePtr& child : f.children("children")) bounds(*child, inside, density, body);
   }
-  const Frame inside = frameIn(frame, f);
-  for (const NodePtr& child : f.children("children")) bounds(*child, inside, density, body);
+  f.finish();
 }
 
-void GeometryReader::addBounds(const Node& node, const Frame& frame, double density, mjcf::Body& body) {
-  auto shape = geometry(node, frame, true);
-  if (!shape) return;
-  mjcf::Geom g;
-  g.from = node.element();
-  g.pose = frame.pose;
-  g.group = kCollisionGroup;
-  if (shape->shape != Shape::plane)
-    g.mass = mjcf::moved(mjcf::shapeMass(*shape, {.density = density, .mass = {}}, g.from), frame.pose);
-  g.shape = std::move(*shape);
-  body.geoms.push_back(std::move(g));
+void GeometryReader::addBounds(const Node& node, const Frame& around, double density, mjcf::Body& body) {
+  const Frame frame = standing(node, around);
+  r_.leaveOut(node, "a bounding object", [&] {
+    auto shape = geometry(node, frame, true);
+    if (!shape) return;
+    mjcf::Geom g;
+    g.from = node.element();
+    g.pose = frame.pose;
+    g.group = kCollisionGroup;
+    if (shape->shape != Shape::plane)
+      g.mass = mjcf::moved(mjcf::shapeMass(*shape, {.density = density, .mass = {}}, g.from), frame.pose);
+    g.shape = std::move(*shape);
+    body.geoms.push_back(std::move(g));
+  });
 }
 
 /// nullopt for what is not supported, which is named.
@@ -80,15 +88,16 @@ std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const
             "creaseAngle", "normal", "normalIndex", "normalPerVertex", "texCoord", "texCoordIndex", "color",
             "colorIndex", "colorPerVertex"});
   ShapeDescription s;
+  const Vec3 lengths = frame.scale.cwiseAbs();  // these shapes are their own mirror images
   if (node.type == "Box") {
-    s.lengths = f.vector("size", Vec3(2, 2, 2)).cwiseProduct(frame.scale);
+    s.lengths = f.vector("size", Vec3(2, 2, 2)).cwiseProduct(lengths);
     if (!(s.lengths.minCoeff() > 0)) throw f.error("size", "expected three lengths above 0 for 'size' of Box");
   } else if (node.type == "Sphere" || node.type == "Cylinder" || node.type == "Capsule") {
     s.shape = node.type == "Sphere" ? Shape::sphere : node.type == "Cylinder" ? Shape::cylinder : Shape::capsule;
-    const bool round = s.shape == Shape::cylinder ? frame.scale.x() == frame.scale.y() : frame.isUniform();
+    const bool round = s.shape == Shape::cylinder ? lengths.x() == lengths.y() : frame.isUniform();
     if (!round) throw needsUniform(node);
-    s.radius = f.number("radius", 1) * frame.scale.x();
-    s.length = s.shape == Shape::sphere ? 0 : f.number("height", 2) * frame.scale.z();
+    s.radius = f.number("radius", 1) * lengths.x();
+    s.length = s.shape == Shape::sphere ? 0 : f.number("height", 2) * lengths.z();
     if (!(s.radius > 0))
       throw f.error("radius", fmt::format("expected a length above 0 for 'radius' of {}", node.type));
     if (s.shape != Shape::sphere && !(s.length > 0))
@@ -99,6 +108,8 @@ std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const
     s.shape = Shape::plane;
   } else if (node.type == "Mesh" || node.type == "IndexedFaceSet") {
     s.shape = Shape::mesh;
+    f.ignore({"url", "coord", "coordIndex"});
+    f.finish();
     // What viewers would not draw need not be read.
     if (!collides) return s;
     s = hull(node, frame.scale);
@@ -108,7 +119,8 @@ std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const
     r_.ignore(node, fmt::format("the geometry {} is not supported", node.type));
     return std::nullopt;
   } else {
-    throw r_.missing(node);
+    r_.missing(node);
+    return std::nullopt;
   }
   f.finish();
   return s;
@@ -118,7 +130,8 @@ std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const
 void GeometryReader::count(const Node& node, const engine::Mesh& mesh) {
   numbers_ += mesh.vertices.size() + mesh.triangles.size();
   if (numbers_ > mjcf::kMaxMeshNumbers)
-    throw node.element().error(fmt::format("the meshes of all nodes have more than {} numbers", mjcf::kMaxMeshNumbers));
+    throw LimitError(fmt::format("{}: the meshes of all nodes have more than {} numbers", node.element().where(),
+                                 mjcf::kMaxMeshNumbers));
 }
 
 /// The convex hull of a mesh, scaled.
@@ -170,6 +183,8 @@ engine::Mesh GeometryReader::faces(Fields& f) {
     throw points.error("point",
                        fmt::format("expected points of 3 numbers each for 'point' of Coordinate, found {} numbers",
                                    numbers ? numbers->size() : 0));
+  points.ignore({"name"});
+  points.finish();
   return {*numbers, {}};
 }
 
@@ -182,14 +197,22 @@ std::optional<std::array<double, 4>> GeometryReader::colorOf(const Node& appeara
     name = "diffuseColor";
     if (!material) return std::nullopt;
   } else if (appearance.type != "PBRAppearance") {
-    if (isBaseNode(appearance.type))
-      throw appearance.element().error("expected an appearance, found " + appearance.type);
+    if (isBaseNode(appearance.type)) {
+      r_.missing(appearance);
+      return std::nullopt;
+    }
     r_.ignore(appearance,
               fmt::format("the appearance {} is a PROTO that is not there; what has it is grey", appearance.type));
     return std::nullopt;
   }
   Fields of(*material, r_.unsupported);
   const Vec3 rgb = of.vector(name, name == std::string_view("baseColor") ? Vec3::Ones() : Vec3(0.8, 0.8, 0.8));
+  f.ignore({"texture", "textureTransform", "name", "baseColorMap", "roughness", "roughnessMap", "metalness",
+            "metalnessMap", "IBLStrength", "normalMap", "normalMapFactor", "occlusionMap", "occlusionMapStrength",
+            "emissiveColor", "emissiveColorMap", "emissiveIntensity", "baseColor", "transparency"});
+  of.ignore({"ambientIntensity", "emissiveColor", "shininess", "specularColor"});
+  f.finish();
+  if (material != &appearance) of.finish();
   const double opacity = 1 - std::clamp(of.number("transparency", 0), 0.0, 1.0);
   return std::array{std::clamp(rgb.x(), 0.0, 1.0), std::clamp(rgb.y(), 0.0, 1.0), std::clamp(rgb.z(), 0.0, 1.0),
                     opacity};

@@ -16,8 +16,11 @@ constexpr std::array<double, 2> kAll{-HUGE_VAL, HUGE_VAL};
 /// 0 for both means: no limit.
 std::array<double, 2> rangeOf(Fields& f, const char* least, const char* most) {
   const std::array<double, 2> range{f.number(least, 0), f.number(most, 0)};
-  if (range[0] > range[1])
-    throw f.error(least, fmt::format("expected '{}' not above '{}', found {} and {}", least, most, range[0], range[1]));
+  if (range[0] > range[1]) {
+    f.wrong(least, fmt::format("expected '{}' not above '{}', found {} and {}; they are ignored", least, most, range[0],
+                               range[1]));
+    return kAll;
+  }
   return range[0] == 0 && range[1] == 0 ? kAll : range;
 }
 
@@ -36,15 +39,18 @@ const Node* JointReader::endPoint(const Node& joint) {
       r_.ignore(joint, fmt::format("a {} without an endPoint is ignored", joint.type));
       return nullptr;
     }
-    if (isSolid(next->type)) return next;
+    if (isSolid(next->type) || !isBaseNode(next->type)) return next;
     if (next->type == "SolidReference") {
       r_.ignore(*next, "a joint with a SolidReference, which closes a loop, is not supported: the loop is open");
       return nullptr;
     }
-    if (next->type != "Slot") throw r_.missing(*next);
+    if (next->type != "Slot") {
+      r_.missing(*next);
+      return nullptr;
+    }
     at = next;
   }
-  throw joint.element().error(fmt::format("expected nodes Slot nested at most {} deep", kMaxDepth));
+  throw LimitError(fmt::format("{}: expected nodes Slot nested at most {} deep", joint.element().where(), kMaxDepth));
 }
 
 std::vector<mjcf::Joint> JointReader::read(const Node& node, const Frame& around, const Pose& solid,
@@ -72,11 +78,14 @@ std::vector<mjcf::Joint> JointReader::read(const Node& node, const Frame& around
     }
   }
   std::vector<mjcf::Joint> out;
-  const Mat3 toChild = solid.rotation.transpose();
+  const Pose scaled = around.scaled(solid);
+  const Mat3 toChild = scaled.rotation.transpose();
+  // In a mirror an axis has another direction, and turns the other way.
+  const Vec3 mirror = around.scale.cwiseSign();
   for (std::size_t i = 0; i < axes.size(); ++i) {
     mjcf::Joint& j = axes[i].joint;
-    j.axis = toChild * j.axis;
-    j.position = toChild * (around.scale.cwiseProduct(anchor) - around.scale.cwiseProduct(solid.position));
+    j.axis = toChild * mirror.cwiseProduct(j.axis) * (j.kind == JointKind::hinge ? mirror.prod() : 1);
+    j.position = toChild * (around.scale.cwiseProduct(anchor) - scaled.position);
     nameAndDrive(j, axes[i].devices, i == 0 ? solidName + "_joint" : fmt::format("{}_joint{}", solidName, i + 1));
     out.push_back(std::move(j));
   }
@@ -92,14 +101,19 @@ mjcf::Joint JointReader::parameters(const Node& node, const char* field, JointKi
   Fields of(node, r_.unsupported);
   const Node* const given = of.child(field);
   if (!given) return j;
-  if (!given->type.ends_with("JointParameters")) throw r_.missing(*given);
+  if (!given->type.ends_with("JointParameters")) {
+    r_.missing(*given);
+    return j;
+  }
   Fields f(*given, r_.unsupported);
   j.from = given->element();
   anchor = f.vector("anchor", Vec3::Zero());
   if (kind != JointKind::ball) {
     j.axis = f.vector("axis", given->type == "HingeJointParameters" ? Vec3(Vec3::UnitX()) : axis);
-    if (!(j.axis.norm() > 1e-10) || !std::isfinite(j.axis.norm()))
-      throw f.error("axis", "expected an axis that is not 0");
+    if (!(j.axis.norm() > 1e-10) || !std::isfinite(j.axis.norm())) {
+      f.wrong("axis", "expected an axis that is not 0; that of the default is taken");
+      j.axis = axis;
+    }
     j.axis.normalize();
     j.reference = f.number("position", 0);
     const std::array<double, 2> stops = rangeOf(f, "minStop", "maxStop");
@@ -120,16 +134,20 @@ JointReader::Devices JointReader::devices(const Node& node, const char* field) {
   for (const NodePtr& device : Fields(node, r_.unsupported).children(field)) {
     r_.visit(*device);
     if (device->type == "RotationalMotor" || device->type == "LinearMotor") {
-      if (out.motor) throw device->element().error(fmt::format("expected one motor in '{}', found two", field));
-      out.motor = device.get();
+      if (out.motor)
+        r_.ignore(*device, fmt::format("expected one motor in '{}', found two; the first one is taken", field));
+      else
+        out.motor = device.get();
     } else if (device->type == "PositionSensor") {
       if (out.sensor)
-        throw device->element().error(fmt::format("expected one PositionSensor in '{}', found two", field));
-      out.sensor = device.get();
+        r_.ignore(*device,
+                  fmt::format("expected one PositionSensor in '{}', found two; the first one is taken", field));
+      else
+        out.sensor = device.get();
     } else if (isBaseNode(device->type)) {
       r_.ignore(*device, fmt::format("a {} in a joint is not supported", device->type));
     } else {
-      throw r_.missing(*device);
+      r_.missing(*device);
     }
   }
   return out;
@@ -143,6 +161,11 @@ void JointReader::nameAndDrive(mjcf::Joint& j, const Devices& d, const std::stri
                             : otherwise);
   if (d.motor) drive(j, *d.motor);
   if (!d.sensor) return;
+  Fields f(*d.sensor, r_.unsupported);
+  f.ignore({"name"});
+  if (f.number("noise", 0) != 0) r_.ignore(*d.sensor, "the noise of a PositionSensor is not supported");
+  if (f.number("resolution", -1) != -1) r_.ignore(*d.sensor, "the resolution of a PositionSensor is not supported");
+  f.finish();
   model_.sensors.push_back(
       {d.sensor->element(), "jointpos", orElse(d.sensor->name(), "position sensor"), j.name, "joint", ""});
 }
@@ -151,10 +174,12 @@ void JointReader::drive(mjcf::Joint& j, const Node& motor) {
   Fields f(motor, r_.unsupported);
   const bool linear = motor.type == "LinearMotor";
   if (linear != (j.kind == JointKind::slide))
-    throw motor.element().error(
-        fmt::format("expected a {} in this joint, found a {}", linear ? "RotationalMotor" : "LinearMotor", motor.type));
+    return r_.ignore(motor, fmt::format("expected a {} in this joint, found a {}, which is left out",
+                                        linear ? "RotationalMotor" : "LinearMotor", motor.type));
   // What Webots' own controllers of motors need.
-  f.ignore({"name", "acceleration", "consumptionFactor", "controlPID", "sound", "multiplier"});
+  f.ignore({"name", "consumptionFactor", "controlPID", "sound"});
+  if (f.number("acceleration", -1) != -1) r_.ignore(motor, "the acceleration of a motor is not limited");
+  if (f.number("multiplier", 1) != 1) r_.ignore(motor, "the multiplier of a motor is not supported");
   const double most = f.number(linear ? "maxForce" : "maxTorque", 10, 0), rate = f.number("maxVelocity", 10, 0);
   const std::array<double, 2> soft = rangeOf(f, "minPosition", "maxPosition");
   f.finish();

@@ -17,8 +17,11 @@ constexpr double kWater = 1000;  ///< kg/m^3
 std::optional<Vec3> centreOf(Fields& f) {
   const std::vector<double>* const v = f.numbers("centerOfMass");
   if (!v) return std::nullopt;
-  if (v->size() != 3)
-    throw f.error("centerOfMass", fmt::format("expected one vector for 'centerOfMass', found {} numbers", v->size()));
+  if (v->size() != 3) {
+    f.wrong("centerOfMass",
+            fmt::format("expected one vector for 'centerOfMass', found {} numbers; it is ignored", v->size()));
+    return std::nullopt;
+  }
   return Vec3((*v)[0], (*v)[1], (*v)[2]);
 }
 
@@ -26,9 +29,11 @@ std::optional<Vec3> centreOf(Fields& f) {
 std::optional<Mat3> inertiaOf(Fields& f) {
   const std::vector<double>* const v = f.numbers("inertiaMatrix");
   if (!v) return std::nullopt;
-  if (v->size() != 6)
-    throw f.error("inertiaMatrix",
-                  fmt::format("expected two vectors for 'inertiaMatrix', found {} numbers", v->size()));
+  if (v->size() != 6) {
+    f.wrong("inertiaMatrix",
+            fmt::format("expected two vectors for 'inertiaMatrix', found {} numbers; it is ignored", v->size()));
+    return std::nullopt;
+  }
   const std::vector<double>& i = *v;
   Mat3 out;
   out << i[0], i[3], i[4], i[3], i[1], i[5], i[4], i[5], i[2];
@@ -51,14 +56,19 @@ engine::Mass massOf(const Node* physics, const mjcf::Body& body, mjcf::Unsupport
   f.ignore({"density"});
   for (const mjcf::Geom& g : body.geoms)
     if (g.mass) sum = physics::together(sum, *g.mass);
-  const double given = f.number("mass", -1);
-  if (given != -1 && !(given >= 0))
-    throw f.error("mass", fmt::format("expected a mass of 0 or more, or -1, found {}", given));
+  double given = f.number("mass", -1);
+  if (given != -1 && !(given >= 0)) {
+    f.wrong("mass", fmt::format("expected a mass of 0 or more, or -1, found {}; it is ignored", given));
+    given = -1;
+  }
   const auto centre = centreOf(f);
-  const auto inertia = inertiaOf(f);
+  auto inertia = inertiaOf(f);
   if (f.has("damping")) unsupported.add(physics->element(), "the damping of a Physics is not supported");
   f.finish();
-  if (inertia && given < 0) throw f.error("inertiaMatrix", "expected a 'mass' beside 'inertiaMatrix'");
+  if (inertia && given < 0) {
+    f.wrong("inertiaMatrix", "expected a 'mass' beside 'inertiaMatrix', which is ignored");
+    inertia.reset();
+  }
   if (given >= 0) {
     if (sum.mass > 0)
       sum.inertia *= given / sum.mass;
@@ -70,8 +80,10 @@ engine::Mass massOf(const Node* physics, const mjcf::Body& body, mjcf::Unsupport
   }
   if (centre) sum.center = *centre;
   if (inertia) sum.inertia = *inertia;
-  if (!std::isfinite(sum.mass) || !sum.center.allFinite() || !sum.inertia.allFinite())
-    throw physics->element().error("expected a mass and an inertia of finite numbers");
+  if (!std::isfinite(sum.mass) || !sum.center.allFinite() || !sum.inertia.allFinite()) {
+    unsupported.add(physics->element(), "expected a mass and an inertia of finite numbers; they are ignored");
+    return {0, Vec3::Zero(), Mat3::Zero()};
+  }
   if (sum.mass > 0) mjcf::mendInertia(sum, physics->element(), "a Physics", unsupported);
   return sum;
 }

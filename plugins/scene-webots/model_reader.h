@@ -24,6 +24,7 @@ class ModelReader {
  private:
   std::size_t addSolid(const Node& solid, const Frame& around, const Node* joint);
   void addJoint(const Node& joint, const Frame& frame);
+  void addDevice(const Node& device, const Frame& frame);
 
   Reading& r_;
   GeometryReader& geometry_;

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
 #include "base_nodes.h"
 
 namespace spark::webots {
@@ -21,23 +24,36 @@ std::string UniqueNames::add(const std::string& name) {
   return out;
 }
 
-Error Reading::missing(const Node& node) const {
-  if (isBaseNode(node.type)) return node.element().error(fmt::format("a node {} cannot be here", node.type));
-  return node.element().error(
-      fmt::format("'{}' is no node of Webots, and its PROTO is not there: {}. What to do: put its file in one of these "
-                  "places, nothing is fetched from the web",
-                  node.type, document.whyMissing(node.type)));
+void Reading::missing(const Node& node) {
+  if (isBaseNode(node.type)) return ignore(node, fmt::format("a node {} cannot be here; it is left out", node.type));
+  ignore(node, fmt::format("a node '{}' is empty: {}", node.type, document.whyMissing(node.type)));
 }
 
 Frame frameIn(const Frame& around, Fields& f) {
   Frame out{around.body, around.at({f.vector("translation", Vec3::Zero()), f.rotation("rotation")}), around.scale};
-  const Vec3 scale = f.vector("scale", Vec3::Ones());
-  if (!(scale.minCoeff() > 0)) throw f.error("scale", "expected three numbers above 0 for 'scale'");
+  f.ignore({"translationStep", "rotationStep"});  // of the editor
+  Vec3 scale = f.vector("scale", Vec3::Ones());
+  for (double& s : scale)
+    if (s == 0 || !std::isfinite(s)) {
+      f.wrong("scale", "expected three numbers that are not 0 for 'scale'; 1 is taken");
+      s = 1;
+    }
   if (!around.isUniform() && f.has("rotation") && !f.rotation("rotation").isIdentity(1e-9))
-    throw f.error("rotation", "a rotation in a frame that is scaled differently in its directions is not supported");
+    f.wrong("rotation",
+            "a rotation in a frame that is scaled differently in its directions is not supported: what is in "
+            "it is not sheared");
   out.scale = around.scale.cwiseProduct(scale);
-  if (!(out.pose.position.cwiseAbs().maxCoeff() <= kFarthest) || !(out.scale.maxCoeff() <= kFarthest))
+  if (!(out.pose.position.cwiseAbs().maxCoeff() <= kFarthest) || !(out.scale.cwiseAbs().maxCoeff() <= kFarthest))
     throw f.element().error(fmt::format("expected lengths of at most {:g} m", kFarthest));
+  return out;
+}
+
+Frame standing(const Node& geometry, const Frame& frame) {
+  if (!geometry.yUp || !standsUp(geometry.type)) return frame;
+  // z to y.
+  Frame out{frame.body, frame.at({Vec3::Zero(), Eigen::AngleAxisd(-M_PI / 2, Vec3::UnitX()).toRotationMatrix()}),
+            frame.scale};
+  std::swap(out.scale.y(), out.scale.z());
   return out;
 }
 

@@ -2,6 +2,8 @@
 /// \file
 /// What the readers of one Webots file share.
 
+#include <fmt/format.h>
+
 #include <set>
 
 #include "document.h"
@@ -16,8 +18,17 @@ struct Frame {
   Pose pose{};
   Vec3 scale = Vec3::Ones();
   /// The pose in the body of what is placed by `local`.
-  Pose at(const Pose& local) const { return compose(pose, {scale.cwiseProduct(local.position), local.rotation}); }
-  bool isUniform() const { return scale.x() == scale.y() && scale.y() == scale.z(); }
+  Pose at(const Pose& local) const { return compose(pose, scaled(local)); }
+  /// A pose in this frame as it is where nothing is scaled: a mirror turns rotations.
+  Pose scaled(const Pose& local) const {
+    const Mat3 mirror = scale.cwiseSign().asDiagonal();
+    return {scale.cwiseProduct(local.position), mirror * local.rotation * mirror};
+  }
+  /// True where all directions are scaled by the same number; some may be mirrored.
+  bool isUniform() const {
+    const Vec3 lengths = scale.cwiseAbs();
+    return lengths.x() == lengths.y() && lengths.y() == lengths.z();
+  }
 };
 
 /// Names that differ: one that is taken gets ~2, ~3, ... at its end.
@@ -30,6 +41,12 @@ class UniqueNames {
   std::map<std::string, int, std::less<>> last_;  ///< number that a name has had
 };
 
+/// A limit that a file has passed: nothing more is read.
+class LimitError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// State of one run over a file.
 struct Reading {
   const Document& document;
@@ -39,15 +56,31 @@ struct Reading {
   /// Throws Error when a file has grown absurdly large by USE and PROTOs.
   void visit(const Node& node) {
     if (++visited > mjcf::kMaxElements)
-      throw node.element().error(
-          fmt::format("expected at most {} nodes, used ones counted each time", mjcf::kMaxElements));
+      throw LimitError(fmt::format("{}: expected at most {} nodes, used ones counted each time", node.element().where(),
+                                   mjcf::kMaxElements));
   }
-  /// A node of a type that is no base node: its PROTO is not there.
-  Error missing(const Node& node) const;
+  /// Names a node that cannot be at its place, or whose PROTO is not there.
+  void missing(const Node& node);
   void ignore(const Node& node, const std::string& why) { unsupported.add(node.element(), why); }
+  /// Does `work`. A part of the node that fails is left out, and named. Throws LimitError.
+  template <class Work>
+  void leaveOut(const Node& node, const char* part, Work work) {
+    try {
+      work();
+    } catch (const LimitError&) {
+      throw;
+    } catch (const Error& error) {
+      std::string text = error.what();
+      if (text.starts_with(node.file->name + ":")) text.erase(0, text.find(": ") + 2);  // the place is that of the node
+      ignore(node, fmt::format("{} is left out: {}", part, text));
+    }
+  }
 };
 
 /// The frame of a Group, Pose or Transform, and of a Solid, in the one around. Throws Error.
 Frame frameIn(const Frame& around, Fields& fields);
+
+/// The frame of a geometry that stands along z, in the frame of its node: in old files it stands along y.
+Frame standing(const Node& geometry, const Frame& frame);
 
 }  // namespace spark::webots

@@ -22,15 +22,18 @@ using Names = std::map<std::string, NodePtr, std::less<>>;
 class Parser {
  public:
   explicit Parser(const mjcf::File& file) : file_(file), tokens_(file) {}
+  Parser(const mjcf::File& file, const Expansion& expansion) : file_(file), tokens_(file, expansion) {}
   Parsed parse();
+  Parsed parseNode();
 
  private:
   Error error(const Token& at, const std::string& text) const { return errorAt(file_, at.offset, text); }
-  void checkHeader() const;
+  void readHeader();
   std::string word(const char* what);
   void sign(char expected, const std::string& where);
   void readExtern(Parsed& out);
   std::shared_ptr<const Proto> readProto(const Token& keyword);
+  bool readTemplate(Proto& proto, std::size_t begin);
   void readDeclaration(Proto& proto, Names& names);
   NodePtr readNode(Names& names, int depth);
   std::shared_ptr<const Value> readValue(Names& names, int depth);
@@ -41,29 +44,29 @@ class Parser {
   const mjcf::File& file_;
   Tokens tokens_;
   std::size_t nodes_ = 0, fields_ = 0;
+  std::vector<Problem> problems_;
+  bool yUp_ = false;
 };
 
-void Parser::checkHeader() const {
+/// "#VRML_SIM R2023b utf8", or "#VRML_SIM V8.5 utf8" before 2018.
+void Parser::readHeader() {
   const std::string_view line = std::string_view(file_.text).substr(0, file_.text.find('\n'));
   const std::size_t at = line.find(kHeader);
   if (at == std::string_view::npos)
     throw errorAt(file_, 0,
-                  fmt::format("expected '{} R{}a utf8' or a newer version in the first line", kHeader, kFirstYear));
+                  fmt::format("expected '{} R{}a utf8', or another version, in the first line", kHeader, kFirstYear));
   const std::size_t version = line.find_first_not_of(' ', at + kHeader.size());
   int year = 0;
   if (version != std::string_view::npos && line[version] == 'R')
     for (std::size_t i = version + 1; i < std::min(version + 5, line.size()) && line[i] >= '0' && line[i] <= '9'; ++i)
       year = 10 * year + (line[i] - '0');
-  if (year < kFirstYear)
-    throw errorAt(file_, version == std::string_view::npos ? at : version,
-                  fmt::format("expected a file of R{}a or newer, in which z is up; found '{}'. What to do: convert it "
-                              "with a newer Webots and save it",
-                              kFirstYear, version == std::string_view::npos ? "" : line.substr(version, 12)));
+  yUp_ = year < kFirstYear;
 }
 
 Parsed Parser::parse() {
-  checkHeader();
+  readHeader();
   Parsed out;
+  out.yUp = yUp_;
   Names names;
   while (tokens_.peek().kind != Kind::end) {
     const Token first = tokens_.peek();
@@ -71,9 +74,10 @@ Parsed Parser::parse() {
       readExtern(out);
     else if (first.isWord("PROTO"))
       out.protos.push_back(readProto(tokens_.next()));
-    else
-      out.nodes.push_back(readNode(names, 0));
+    else if (NodePtr node = readNode(names, 0))
+      out.nodes.push_back(std::move(node));
   }
+  out.problems = std::move(problems_);
   return out;
 }
 
@@ -115,10 +119,31 @@ std::shared_ptr<const Proto> Parser::readProto(const Token& keyword) {
   sign('[', "before the fields of the PROTO");
   while (!tokens_.peek().is(']')) readDeclaration(*proto, names);
   tokens_.next();
+  if (tokens_.peek().is('{') && readTemplate(*proto, tokens_.peek().offset + 1)) return proto;
   sign('{', "before the node of the PROTO");
   proto->body = readNode(names, 1);
   sign('}', "behind the one node of the PROTO");
   return proto;
+}
+
+/// False where the node is no template. A template ends with the file, since the braces of its texts need not match.
+bool Parser::readTemplate(Proto& proto, std::size_t begin) {
+  const std::size_t end = file_.text.rfind('}');
+  if (end == std::string::npos || end < begin) return false;
+  proto.text = templateIn(file_, begin, end);
+  if (proto.text) tokens_.skipTo(end + 1);
+  return proto.text.has_value();
+}
+
+Parsed Parser::parseNode() {
+  readHeader();
+  Names names;
+  Parsed out;
+  if (NodePtr node = readNode(names, 1)) out.nodes.push_back(std::move(node));
+  if (tokens_.peek().kind != Kind::end)
+    throw error(tokens_.peek(), "expected one node in the PROTO, found " + tokens_.peek().named() + " behind it");
+  out.problems = std::move(problems_);
+  return out;
 }
 
 /// field SFColor{0 0 0, 1 1 1} name 0 0 0
@@ -145,9 +170,10 @@ void Parser::readDeclaration(Proto& proto, Names& names) {
   }
   const std::size_t offset = tokens_.peek().offset;
   std::string name = word("the name of the field");
-  proto.fields.push_back({std::move(name), offset, readValue(names, 1)});
+  proto.fields.push_back({std::move(name), offset, readValue(names, 1), typeName});
 }
 
+/// nullptr for a USE of a node that is not there.
 NodePtr Parser::readNode(Names& names, int depth) {
   const Token first = tokens_.peek();
   if (depth > kMaxDepth) throw error(first, fmt::format("expected nodes nested at most {} deep", kMaxDepth));
@@ -155,10 +181,12 @@ NodePtr Parser::readNode(Names& names, int depth) {
     tokens_.next();
     const std::string name = word("a name behind USE");
     const auto found = names.find(name);
-    if (found == names.end())
-      throw error(first,
-                  fmt::format("expected the name of a node that a DEF before this place ends, found '{}'", name));
-    return found->second;
+    if (found != names.end()) return found->second;
+    problems_.push_back(
+        {first.offset,
+         fmt::format("expected the name of a node that a DEF before this place ends, found '{}'; it is left out",
+                     name)});
+    return nullptr;
   }
   auto node = std::make_shared<Node>();
   if (first.isWord("DEF")) {
@@ -166,6 +194,7 @@ NodePtr Parser::readNode(Names& names, int depth) {
     node->definition = word("a name behind DEF");
   }
   node->file = &file_;
+  node->yUp = yUp_;
   node->offset = tokens_.peek().offset;
   count(tokens_.peek(), nodes_, kMaxNodes, "nodes");
   node->type = word("the type of a node");
@@ -174,10 +203,8 @@ NodePtr Parser::readNode(Names& names, int depth) {
     const Token t = tokens_.peek();
     count(t, fields_, kMaxFields, "fields");
     std::string name = word(fmt::format("a field of {} or '}}'", node->type).c_str());
-    const bool hidden = name == "hidden";  // what Webots keeps of a simulation that ran
-    if (hidden) name = word("the name of the hidden field");
-    auto value = readValue(names, depth + 1);
-    if (!hidden) node->fields.push_back({std::move(name), t.offset, std::move(value)});
+    if (name == "hidden") name = std::string(kHidden) + word("the name of the hidden field");
+    node->fields.push_back({std::move(name), t.offset, readValue(names, depth + 1)});
   }
   tokens_.next();
   if (!node->definition.empty()) names[node->definition] = node;
@@ -193,6 +220,7 @@ std::shared_ptr<const Value> Parser::readValue(Names& names, int depth) {
     value->texts.push_back(word("the name of a field of the PROTO behind IS"));
   } else if (first.is('[')) {
     tokens_.next();
+    value->isList = true;
     while (!tokens_.peek().is(']')) readItem(*value, names, depth);
     tokens_.next();
   } else {
@@ -200,6 +228,7 @@ std::shared_ptr<const Value> Parser::readValue(Names& names, int depth) {
     readItem(*value, names, depth);
     while (value->kind == Value::Kind::numbers && tokens_.peek().kind == Kind::number) readItem(*value, names, depth);
   }
+  if (value->kind == Value::Kind::nodes && value->nodes.empty()) value->kind = Value::Kind::empty;
   return value;
 }
 
@@ -222,7 +251,7 @@ void Parser::readItem(Value& value, Names& names, int depth) {
     value.texts.push_back(t.text);
   } else if (t.kind == Kind::word) {
     add(value, Value::Kind::nodes, t);
-    value.nodes.push_back(readNode(names, depth));
+    if (NodePtr node = readNode(names, depth)) value.nodes.push_back(std::move(node));
     return;
   } else {
     throw error(t, fmt::format("expected a value, found {}", t.named()));
@@ -249,6 +278,7 @@ bool isWebots(std::string_view text) {
 }
 
 Parsed parsed(const mjcf::File& file) { return Parser(file).parse(); }
+Parsed parsedNode(const mjcf::File& file, const Expansion& expansion) { return Parser(file, expansion).parseNode(); }
 
 Error errorAt(const mjcf::File& file, std::size_t offset, const std::string& text) {
   return Error(fmt::format("{}:{}: {}", file.name, mjcf::lineAndColumn(file.text, offset), text));

@@ -33,6 +33,16 @@ Tokens::Tokens(const mjcf::File& file) : file_(file), text_(file.text) {
   read();
 }
 
+Tokens::Tokens(const mjcf::File& file, const Expansion& expansion)
+    : file_(file), expansion_(&expansion), text_(expansion.text) {
+  read();
+}
+
+void Tokens::skipTo(std::size_t offset) {
+  at_ = std::min(offset, text_.size());
+  read();
+}
+
 Token Tokens::next() {
   Token out = std::move(token_);
   read();
@@ -53,7 +63,7 @@ void Tokens::skipSpace() {
 void Tokens::read() {
   skipSpace();
   token_ = {};
-  token_.offset = at_;
+  token_.offset = offsetOf(at_);
   if (at_ == text_.size()) return;
   refuseTemplate(at_);
   if (text_[at_] == '"') return readText();
@@ -95,16 +105,12 @@ void Tokens::readWord() {
     throw errorAt(file_, token_.offset, fmt::format("expected a number, found {}", token_.named()));
 }
 
-/// %< >% and %{ }% are programs that write the file.
+/// %< >% and %{ }% are programs that write the node of a PROTO.
 void Tokens::refuseTemplate(std::size_t at) const {
   const std::string_view rest = text_.substr(at, 2);
   if (rest == "%<" || rest == "%{")
-    throw errorAt(
-        file_, at,
-        fmt::format("'{}' begins a statement of a template in Javascript or Lua, which is not supported. What "
-                    "to do: convert the node to base nodes in Webots (its menu has \"Convert to Base "
-                    "Node(s)\") and save the world",
-                    rest));
+    throw errorAt(file_, offsetOf(at),
+                  fmt::format("'{}' begins a statement of a template, which only the node of a PROTO may have", rest));
 }
 
 }  // namespace spark::webots

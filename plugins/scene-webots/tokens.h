@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "robot/document.h"
+#include "template_text.h"
 
 namespace spark::webots {
 
@@ -27,10 +28,14 @@ class Tokens {
  public:
   /// `file` must outlive this. Throws Error as next() does.
   explicit Tokens(const mjcf::File& file);
+  /// Those of a text that a template of the file has written, which must outlive this.
+  Tokens(const mjcf::File& file, const Expansion& expansion);
   const Token& peek() const { return token_; }
   /// Returns the present token and goes on to the next one. Throws Error with file:line:column for bytes that are no
-  /// token, and for statements of templates.
+  /// token, and for statements of templates outside of PROTOs.
   Token next();
+  /// Goes on at a place of the file.
+  void skipTo(std::size_t offset);
 
  private:
   void skipSpace();
@@ -38,7 +43,9 @@ class Tokens {
   void readText();
   void readWord();
   void refuseTemplate(std::size_t at) const;
+  std::size_t offsetOf(std::size_t at) const { return expansion_ ? expansion_->offsetOf(at) : at; }
   const mjcf::File& file_;
+  const Expansion* expansion_ = nullptr;
   std::string_view text_;
   std::size_t at_ = 0;
   Token token_;

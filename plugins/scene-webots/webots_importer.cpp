@@ -9,6 +9,7 @@
 #include "robot/names.h"
 #include "spark/access.h"
 #include "spark/plugin.h"
+#include "template_process.h"
 #include "webots_reader.h"
 
 namespace spark {
@@ -47,6 +48,8 @@ void WebotsImporter::describe(Description<WebotsImporter>& d) {
   d.implements<ISceneImporter>();
   d.property("strict", &WebotsImporter::strict_)
       .doc("Unsupported nodes and fields are errors; otherwise they are logged.");
+  d.property("protos", &WebotsImporter::folders_)
+      .doc("Folders in which files of PROTOs and meshes are looked for as well.");
 }
 
 bool WebotsImporter::recognises(std::string_view text, std::string_view file) const {
@@ -57,18 +60,21 @@ void WebotsImporter::import(std::string_view file, Node& root, const List& argum
   const webots::Base base = baseOf(file, arguments);
   const std::string prefix = arguments.empty() ? "" : arguments.front().plain();
   auto& files = kernel().root().require<IFileServer>();
-  const webots::ReadFile read = [&](const std::string& name) {
-    return files.exists(name) ? std::optional(files.read(name)) : std::nullopt;
-  };
+  webots::TemplateProcess templates(webots::TemplateProcess::path());
+  const webots::Sources sources{
+      [&](const std::string& name) { return files.exists(name) ? std::optional(files.read(name)) : std::nullopt; },
+      [&](const std::string& request) { return templates.ask(request); }, folders_};
   const webots::ReadMesh readMesh = [&](const std::string& of, const std::string& url) {
-    const std::vector<std::string> candidates = webots::fileNames(of, url);
+    const std::vector<std::string> candidates = webots::fileNames(of, url, folders_);
     for (const std::string& candidate : candidates)
       if (files.exists(candidate)) return meshes::readMesh(candidate, files.read(candidate));
     throw Error(fmt::format("there is no such file; looked for {}", fmt::join(candidates, ", ")));
   };
   mjcf::Unsupported unsupported;
-  const webots::Document document(std::string(file), read, unsupported);
+  const webots::Document document(std::string(file), sources, unsupported);
   webots::World world = webots::readWorld(document, base, readMesh, unsupported);
+
+  if (const auto left = unsupported.sentences(); strict_ && !left.empty()) throw Error(left.front());
 
   bool withoutParts = false;
   const std::size_t before = root.children().size();
@@ -91,6 +97,7 @@ void WebotsImporter::import(std::string_view file, Node& root, const List& argum
   if (world.basicTimeStep)
     kernel().log().info("{}: the basicTimeStep of {} ms is ignored: the simulation has its own", file,
                         *world.basicTimeStep);
+  for (const std::string& line : document.said()) kernel().log().info("a template prints: {}", line);
   for (const std::string& sentence : unsupported.sentences()) kernel().log().warning("{}", sentence);
 }
 

@@ -20,6 +20,7 @@ class WebotsImporter : public Leaf, public ISceneImporter {
 
  private:
   bool strict_ = false;
+  std::vector<std::string> folders_;
 };
 
 }  // namespace spark

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base_nodes.h"
 #include "known_protos.h"
@@ -12,6 +13,14 @@
 namespace spark::webots {
 
 namespace {
+
+/// From the axes of a file to those of the world, x to the east, y to the north and z up.
+Mat3 up(const std::string& coordinates) {
+  Mat3 out = Mat3::Identity();
+  if (coordinates == "NUE") out << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  if (coordinates == "EUN") out << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return out;
+}
 
 /// A plane has no end, and cannot move.
 void dropMovingPlanes(mjcf::Model& model, mjcf::Unsupported& unsupported) {
@@ -38,6 +47,7 @@ class Reader {
  private:
   void readNode(const Node& node, const Frame& frame);
   void readWorldInfo(const Node& node);
+  double readGravity(Fields& f);
   void readLight(const Node& node, const Frame& frame);
   void readSolid(const Node& node, const Frame& frame);
   mjcf::Model& addModel(const Node& node, const std::string& name);
@@ -53,7 +63,8 @@ class Reader {
 };
 
 World Reader::read() {
-  for (const NodePtr& node : document_.nodes()) readNode(*node, {});
+  const Frame root{0, {Vec3::Zero(), up(document_.coordinates())}};
+  for (const NodePtr& node : document_.nodes()) readNode(*node, root);
   if (world_.models.empty()) return std::move(world_);
   for (mjcf::Model& model : world_.models) {
     dropMovingPlanes(model, r_.unsupported);
@@ -69,7 +80,7 @@ void Reader::readNode(const Node& node, const Frame& frame) {
   const std::string& type = node.type;
   if (isSolid(type)) return readSolid(node, frame);
   if (type == "WorldInfo") return readWorldInfo(node);
-  if (isScenery(type)) return;
+  if (isScenery(type)) return readScenery(node, r_);
   if (type == "DirectionalLight" || type == "PointLight" || type == "SpotLight") return readLight(node, frame);
   if (isGroup(type)) {
     Fields f(node, r_.unsupported);
@@ -81,7 +92,7 @@ void Reader::readNode(const Node& node, const Frame& frame) {
   } else if (isBaseNode(type)) {
     r_.ignore(node, fmt::format("a {} in the world is not supported", type));
   } else if (!isBackdrop(type)) {
-    if (!isGround(type)) throw r_.missing(node);
+    if (!isGround(type)) return readSolid(node, frame);  // which is empty
     mjcf::Model& model = scenery(node);
     readGround(node, frame, model.bodies.front(), r_);
   }
@@ -93,17 +104,27 @@ void Reader::readWorldInfo(const Node& node) {
   f.ignore({"title", "info", "window", "CFM", "ERP", "FPS", "optimalThreadCount", "physicsDisableTime",
             "physicsDisableLinearThreshold", "physicsDisableAngularThreshold", "inkEvaporation", "gpsCoordinateSystem",
             "gpsReference", "lineScale", "dragForceScale", "dragTorqueScale", "randomSeed"});
-  if (const std::string system = f.text("coordinateSystem", "ENU"); system != "ENU")
-    throw f.error(
-        "coordinateSystem",
-        fmt::format("expected \"ENU\", where z is up, for 'coordinateSystem', found \"{}\". What to do: convert "
-                    "the world with a newer Webots and save it",
-                    system));
-  const double gravity = f.number("gravity", 9.81, 0);
+  const std::string system = f.text("coordinateSystem", "ENU");
+  if (system != "ENU" && system != "NUE" && system != "EUN")
+    f.wrong("coordinateSystem", fmt::format("expected \"ENU\", \"NUE\" or \"EUN\" for 'coordinateSystem', found "
+                                            "\"{}\"; \"ENU\" is taken",
+                                            system));
+  const double gravity = readGravity(f);
   gravity_ = mjcf::Option{node.element(), "gravity", List{0.0, 0.0, -gravity}};
   if (f.has("basicTimeStep")) world_.basicTimeStep = f.number("basicTimeStep", 32);
   if (f.has("contactProperties")) r_.ignore(node, "contactProperties are not supported: friction is 1");
   f.finish();
+}
+
+/// A vector, or since R2020b a number.
+double Reader::readGravity(Fields& f) {
+  const Field* const given = f.node().field("gravity");
+  if (!given || given->value->numbers.size() != 3) return f.number("gravity", 9.81, 0);
+  const Vec3 gravity = f.vector("gravity", Vec3::Zero());
+  const Vec3 turned = up(document_.coordinates()) * gravity;
+  if (std::hypot(turned.x(), turned.y()) > 1e-9 || turned.z() > 0)
+    f.wrong("gravity", "expected a gravity that points down; its length is taken");
+  return gravity.norm();
 }
 
 void Reader::readLight(const Node& node, const Frame& frame) {
@@ -119,7 +140,7 @@ void Reader::readLight(const Node& node, const Frame& frame) {
     light.diffuse[static_cast<std::size_t>(i)] = std::clamp(color[i] * intensity, 0.0, 1.0);
     light.ambient[static_cast<std::size_t>(i)] = std::clamp(color[i] * ambient, 0.0, 1.0);
   }
-  if (node.type == "DirectionalLight") return;  // the sun, which viewers have
+  if (node.type == "DirectionalLight") return f.finish();  // the sun, which viewers have
   light.location = frame.at({f.vector("location", Vec3::Zero()), Mat3::Identity()}).position;
   light.radius = f.number("radius", 100, 0);
   f.finish();
@@ -127,8 +148,9 @@ void Reader::readLight(const Node& node, const Frame& frame) {
 }
 
 void Reader::readSolid(const Node& node, const Frame& frame) {
-  const bool robot = node.type == "Robot";
-  mjcf::Model& model = addModel(node, std::string(node.name().empty() ? (robot ? "robot" : "solid") : node.name()));
+  const bool robot = isRobot(node.type);
+  const std::string otherwise = !isBaseNode(node.type) ? node.type : robot ? "robot" : "solid";
+  mjcf::Model& model = addModel(node, node.name().empty() ? otherwise : std::string(node.name()));
   model.selfCollides = robot && Fields(node, r_.unsupported).flag("selfCollision", false);
   std::optional<bool> free;
   if (robot && base_ != Base::byFile) free = base_ == Base::free;

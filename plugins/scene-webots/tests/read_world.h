@@ -7,6 +7,7 @@
 #include <catch2/catch.hpp>
 #include <map>
 
+#include "../template_process.h"
 #include "../webots_reader.h"
 
 namespace spark::webots::test {
@@ -14,16 +15,18 @@ namespace spark::webots::test {
 struct Read {
   mjcf::Unsupported unsupported;
   std::map<std::string, std::string> files;
-  ReadFile readFile = [this](const std::string& name) {
-    const auto found = files.find(name);
-    return found == files.end() ? std::nullopt : std::optional(found->second);
-  };
+  TemplateProcess templates{TemplateProcess::path(), 1};
+  Sources sources{[this](const std::string& name) {
+                    const auto found = files.find(name);
+                    return found == files.end() ? std::nullopt : std::optional(found->second);
+                  },
+                  [this](const std::string& request) { return templates.ask(request); }};
   Document document;
   ReadMesh readMesh = cube;
   World world;
   explicit Read(const std::string& text, Base base = Base::byFile, std::map<std::string, std::string> others = {})
       : files(with(std::move(others), text)),
-        document("a.wbt", readFile, unsupported),
+        document("a.wbt", sources, unsupported),
         world(readWorld(document, base, readMesh, unsupported)) {}
   static std::map<std::string, std::string> with(std::map<std::string, std::string> files, const std::string& text) {
     files["a.wbt"] = text;
