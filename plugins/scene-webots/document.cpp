@@ -26,6 +26,7 @@ Document::Document(const std::string& name, const Sources& sources, mjcf::Unsupp
   if (!nodes_.empty() || protos.empty()) return;
   Node only{protos.back()->name, "", &source->file, protos.back()->offset};
   nodes_.push_back(instance(only, {source, protos.back()}, scope));
+  coordinates_ = nodes_.back()->yUp ? "NUE" : "ENU";  // of the file that has the node itself
 }
 
 /// Before R2022a the field was not always there, and y was up by default; before R2020b gravity was a vector.

@@ -19,6 +19,11 @@ constexpr int kFirstYear = 2022;  ///< since R2022a z is up, and cylinders stand
 /// Names behind DEF, each of the last node that has it so far.
 using Names = std::map<std::string, NodePtr, std::less<>>;
 
+/// What programs print for numbers that are none.
+bool isNoNumber(const Token& t) {
+  return t.isWord("nan") || t.isWord("-nan") || t.isWord("inf") || t.isWord("-inf") || t.isWord("NaN");
+}
+
 class Parser {
  public:
   explicit Parser(const mjcf::File& file) : file_(file), tokens_(file) {}
@@ -226,7 +231,8 @@ std::shared_ptr<const Value> Parser::readValue(Names& names, int depth) {
   } else {
     // Several numbers are one value, such as a vector; other values are alone.
     readItem(*value, names, depth);
-    while (value->kind == Value::Kind::numbers && tokens_.peek().kind == Kind::number) readItem(*value, names, depth);
+    while (value->kind == Value::Kind::numbers && (tokens_.peek().kind == Kind::number || isNoNumber(tokens_.peek())))
+      readItem(*value, names, depth);
   }
   if (value->kind == Value::Kind::nodes && value->nodes.empty()) value->kind = Value::Kind::empty;
   return value;
@@ -249,6 +255,10 @@ void Parser::readItem(Value& value, Names& names, int depth) {
   } else if (t.isWord("TRUE") || t.isWord("FALSE") || t.isWord("NULL")) {
     add(value, Value::Kind::words, t);
     value.texts.push_back(t.text);
+  } else if (isNoNumber(t)) {
+    add(value, Value::Kind::numbers, t);
+    value.numbers.push_back(0);
+    problems_.push_back({t.offset, fmt::format("expected a number, found {}; 0 is taken", t.named())});
   } else if (t.kind == Kind::word) {
     add(value, Value::Kind::nodes, t);
     if (NodePtr node = readNode(names, depth)) value.nodes.push_back(std::move(node));

@@ -352,6 +352,12 @@ Solid { boundingObject Plane { } name "ground" })");
   CHECK(vector.world.models.back().options.at(0).value == spark::Value(List{0.0, 0.0, -9.81}));
   const Read zUp("#VRML_SIM R2019b utf8\nWorldInfo { gravity 0 0 -9.81 }\nSolid { translation 0 0 1 }");
   CHECK(zUp.body("solid").pose.position == Vec3(0, 0, 1));
+  // A PROTO file alone has the axes of the file that has its node.
+  const Read wrapped("#VRML_SIM R2021b utf8\nPROTO W [ ] { Inner { } }", Base::byFile,
+                     {{"Inner.proto", "#VRML_SIM R2022b utf8\nPROTO Inner [ ] { Robot { translation 0 0 1 } }"}});
+  CHECK(wrapped.body("robot").pose.position == Vec3(0, 0, 1));
+  const Read alone("#VRML_SIM R2021b utf8\nPROTO W [ ] { Robot { translation 0 1 0 } }");
+  CHECK(alone.body("robot").pose.position.isApprox(Vec3(0, 0, 1)));
   const Read east(world("WorldInfo { coordinateSystem \"EUN\" }\nSolid { translation 0 1 0 }"));
   CHECK(east.body("solid").pose.position.isApprox(Vec3(0, 0, 1)));
 }

@@ -11,6 +11,12 @@ TEST_CASE("Commas and comments separate; numbers, texts and lists are read as VR
   CHECK(r.body("a\"b").pose.position == Vec3(0.5, -0.1, 2));
 }
 
+TEST_CASE("Numbers that are none are named, and 0") {
+  const Read r(world("Solid { translation 1 -nan inf }"));
+  CHECK(r.body("solid").pose.position == Vec3(1, 0, 0));
+  CHECK_THAT(r.messages(), Contains("a.wbt:2:23: expected a number, found '-nan'; 0 is taken"));
+}
+
 TEST_CASE("A file that is not of Webots is refused, and templates outside of PROTOs") {
   CHECK_THAT(failure("Solid { }"), Contains("a.wbt:1:1: expected '#VRML_SIM R2022a utf8', or another version"));
   CHECK_THAT(failure(world("Solid { name \"%{= 3 }%\" }")),
