@@ -6,7 +6,7 @@
 -- expect: webots/flawed.wbt:10:5: a node 'Bumper' is empty: its PROTO is not there
 -- expect: webots/flawed.wbt:12:46: expected an axis that is not 0
 -- expect: expected 'minStop' not above 'maxStop', found 2 and 1
--- expect: webots/flawed.wbt:12:75: the field 'squeak' of HingeJointParameters is not supported
+-- expect: webots/flawed.wbt:12:77: the field 'squeak' of HingeJointParameters is not supported
 -- expect: webots/flawed.wbt:15:27: expected the name of a node that a DEF before this place ends, found 'NOTHING'
 -- expect: cannot read the mesh 'not_there.stl'
 -- expect: expected two vectors for 'inertiaMatrix', found 3 numbers
