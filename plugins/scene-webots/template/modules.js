@@ -147,9 +147,11 @@
     assert: (statement, message) => { if (!statement) say(message); },
     error: say,
     info: say,
-    deepCopy: (v) => v !== null && typeof v === 'object'
-      ? Object.assign(Array.isArray(v) ? [] : {}, Object.fromEntries(Object.entries(v).map(([k, w]) => [k, wbutility.deepCopy(w)])))
-      : v,
+    deepCopy: (v) => {
+      if (v === null || typeof v !== 'object') return v;
+      const parts = Object.entries(v).map(([k, part]) => [k, wbutility.deepCopy(part)]);
+      return Object.assign(Array.isArray(v) ? [] : {}, Object.fromEntries(parts));
+    },
     degreesToRadians: (a) => a * Math.PI / 180,
     radiansToDegrees: (a) => a * 180 / Math.PI,
     isScalar: (v) => typeof v === 'number',
@@ -186,7 +188,8 @@
     };
     const body = text
       .replace(/\bimport\s*\*\s*as\s+([\w$]+)\s+from\s*(['"])(.*?)\2[ \t]*;?/g, take((name) => name))
-      .replace(/\bimport\s*\{([^}]*)\}\s*from\s*(['"])(.*?)\2[ \t]*;?/g, take((list) => `{${list.replace(/\bas\b/g, ':')}}`));
+      .replace(/\bimport\s*\{([^}]*)\}\s*from\s*(['"])(.*?)\2[ \t]*;?/g,
+               take((list) => `{${list.replace(/\bas\b/g, ':')}}`));
     return `(function () { var spark$value; ${[...imports].join(' ')} ${body}\n})()`;
   };
 })()

@@ -1,6 +1,6 @@
--- What templates in Lua find: fields, context, the modules wb*, print; random numbers and times that are the same in each
--- run, tables that are visited in order of their keys, and no files. The arguments are fields, context and a function that
--- takes what the template prints.
+-- What templates in Lua find: fields, context, the modules wb*, print; random numbers and times that are the same in
+-- each run, tables that are visited in order of their keys, and no files. The arguments are fields, context and a
+-- function that takes what the template prints.
 local fields_, context_, say_ = ...
 fields, context = fields_, context_
 
@@ -32,7 +32,8 @@ end
 -- Lua 5.2, for which templates were written, has these as well.
 unpack, table.getn, table.maxn = table.unpack, function(t) return #t end, function(t) return #t end
 math.pow, math.mod, math.log10 = function(a, b) return a ^ b end, math.fmod, function(a) return math.log(a, 10) end
-math.cosh, math.sinh = function(a) return (math.exp(a) + math.exp(-a)) / 2 end, function(a) return (math.exp(a) - math.exp(-a)) / 2 end
+math.cosh = function(a) return (math.exp(a) + math.exp(-a)) / 2 end
+math.sinh = function(a) return (math.exp(a) - math.exp(-a)) / 2 end
 math.tanh, math.atan2 = function(a) return math.sinh(a) / math.cosh(a) end, math.atan
 math.ldexp = function(a, n) return a * 2.0 ^ n end
 
@@ -141,7 +142,8 @@ function wbrotation.frommatrix3(m)
   if not wbrotation.isvalid(r) then
     if cosine > 0 then return { x = 1, y = 0, z = 0, a = 0 } end
     -- Half a turn: the matrix is 2 n n' - 1.
-    r.x, r.y, r.z = math.sqrt(math.max(0, (m[1] + 1) / 2)), math.sqrt(math.max(0, (m[5] + 1) / 2)), math.sqrt(math.max(0, (m[9] + 1) / 2))
+    local function part(diagonal) return math.sqrt(math.max(0, (diagonal + 1) / 2)) end
+    r.x, r.y, r.z = part(m[1]), part(m[5]), part(m[9])
     if r.x > 0 then
       if m[2] < 0 then r.y = -r.y end
       if m[3] < 0 then r.z = -r.z end
@@ -160,9 +162,13 @@ function wbrotation.combine(rA, rB)
     z = a.w * b.z + a.x * b.y - a.y * b.x + a.z * b.w }
 end
 function wbrotation.rotatevector3bymatrix3(m, v)
-  return { x = m[1] * v.x + m[2] * v.y + m[3] * v.z, y = m[4] * v.x + m[5] * v.y + m[6] * v.z, z = m[7] * v.x + m[8] * v.y + m[9] * v.z }
+  return { x = m[1] * v.x + m[2] * v.y + m[3] * v.z,
+           y = m[4] * v.x + m[5] * v.y + m[6] * v.z,
+           z = m[7] * v.x + m[8] * v.y + m[9] * v.z }
 end
-function wbrotation.rotatevector3byrotation(r, v) return wbrotation.rotatevector3bymatrix3(wbrotation.tomatrix3(r), v) end
+function wbrotation.rotatevector3byrotation(r, v)
+  return wbrotation.rotatevector3bymatrix3(wbrotation.tomatrix3(r), v)
+end
 function wbrotation.rotatevector3byquaternion(q, v)
   return wbrotation.rotatevector3byrotation(wbrotation.fromquaternion(q), v)
 end
@@ -249,9 +255,11 @@ function wbfile.fileexists() return false end
 function wbfile.readtextfile(name) error("templates read and write no files: '" .. tostring(name) .. "'", 2) end
 wbfile.writetextfile = wbfile.readtextfile
 
-io = { open = function(name) return nil, "templates read and write no files: '" .. tostring(name) .. "'" end, write = say,
-       stdout = { write = function(_, ...) say(...) end }, stderr = { write = function(_, ...) say(...) end } }
-os = { time = function() return 0 end, clock = function() return 0 end, date = function() return "" end, getenv = function() end }
+local stream = { write = function(_, ...) say(...) end }
+io = { open = function(name) return nil, "templates read and write no files: '" .. tostring(name) .. "'" end,
+       write = say, stdout = stream, stderr = stream }
+local function zero() return 0 end
+os = { time = zero, clock = zero, date = function() return "" end, getenv = function() end }
 debug = { getinfo = function() return { source = context.proto, short_src = context.proto, currentline = 0 } end,
           traceback = function(text) return text end }
 
@@ -259,10 +267,12 @@ debug = { getinfo = function() return { source = context.proto, short_src = cont
 local gd = {}
 setmetatable(gd, { __index = function() return function() return gd end end })
 
-local modules = { wbrandom = wbrandom, wbvector2 = wbvector2, wbvector3 = wbvector3, wbrotation = wbrotation, wbgeometry = wbgeometry,
-  wbcore = wbcore, wbmath = wbmath, wbstring = wbstring, wbfile = wbfile, math = math, string = string, table = table, io = io,
-  os = os, debug = debug, gd = gd,
-  wblimits = { maxdouble = 2.0 ^ 53, mindouble = -2.0 ^ 53 } }
+local modules = {
+  wbrandom = wbrandom, wbvector2 = wbvector2, wbvector3 = wbvector3, wbrotation = wbrotation, wbgeometry = wbgeometry,
+  wbcore = wbcore, wbmath = wbmath, wbstring = wbstring, wbfile = wbfile, math = math, string = string, table = table,
+  io = io, os = os, debug = debug, gd = gd,
+  wblimits = { maxdouble = 2.0 ^ 53, mindouble = -2.0 ^ 53 },
+}
 function require(name)
   return modules[name] or error("there is no module '" .. tostring(name) .. "'", 2)
 end
