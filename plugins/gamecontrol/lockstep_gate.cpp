@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace spark::gamecontrol {
@@ -34,9 +35,11 @@ bool LockstepGate::isOpen(const List& participants, const List& newcomers, const
   const auto joins = [](const auto& p) { return p->joining(); };
   const bool anyJoins = std::any_of(participants.begin(), participants.end(), joins) ||
                         std::any_of(newcomers.begin(), newcomers.end(), joins);
+  const auto lapsed =
+      std::count_if(participants.begin(), participants.end(), [](const auto& p) { return p->lapsed(); });
   bool untrusted = false;
   for (const auto& p : participants) {
-    if (hasAnswered(*p, limits, look.last, anyJoins, log)) continue;
+    if (hasAnswered(*p, limits, look.last, anyJoins, static_cast<int>(lapsed), log)) continue;
     if (!isUntrusted(*p, limits, look.last)) return false;
     untrusted = true;
   }
@@ -46,12 +49,12 @@ bool LockstepGate::isOpen(const List& participants, const List& newcomers, const
 
 /// True if the gate need not wait for `p` now. One program may control many agents and read from each in turn: while
 /// any agent is about to get its first percepts, the wait for the others is limited by answerWait.
-bool LockstepGate::hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins,
+bool LockstepGate::hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins, int lapsed,
                                AgentLog& log) const {
   if (p.leaving() || !p.mustAnswer() || p.answered()) return true;
   const double waits = waited(last);
   if (!p.pledged()) {
-    if (waits < patience(p, limits, anyJoins)) return false;
+    if (waits < patience(p, limits, anyJoins, lapsed)) return false;
     log.write(Level::info,
               fmt::format("{} has not answered for {:.3g} s. The match does not wait for it until it sends its first "
                           "sync message, (syn) for most robots.",
@@ -66,10 +69,12 @@ bool LockstepGate::hasAnswered(Participant& p, const Limits& limits, Clock::time
   return true;
 }
 
-/// For how long a cycle waits for an agent that has not sent a sync predicate yet [s].
-double LockstepGate::patience(const Participant& p, const Limits& limits, bool anyJoins) const {
-  const double own = limits.answerWait * (anyJoins ? 1 : 1 + p.answers());
-  return limits.syncTimeout > 0 ? std::min(own, limits.syncTimeout) : own;
+/// For how long a cycle waits for an agent that has not sent a sync predicate yet [s]. Each of the `lapsed` agents,
+/// which were waited for in vain, halves it: a team of which each player waits for the next one to join costs little
+/// more than one such player.
+double LockstepGate::patience(const Participant& p, const Limits& limits, bool anyJoins, int lapsed) const {
+  const double own = std::ldexp(limits.answerWait * (anyJoins ? 1 : 1 + p.answers()), -lapsed);
+  return std::max(limits.syncTimeout > 0 ? std::min(own, limits.syncTimeout) : own, limits.joinPace);
 }
 
 /// True if waiting for it is charged to the budget: it has not proved yet that it answers, or it is slow in this cycle

@@ -4,9 +4,10 @@
 ///
 /// The gate waits for agents that have sent a sync predicate before and were sent percepts since, until syncTimeout.
 /// Before its first sync predicate an agent is waited for as long as it has answered every message, for answerWait and
-/// once more answerWait for each answer: what a client gets while it joins does not depend on how fast it is, and one
-/// that never answers costs one answerWait. It does not wait for others: an idle connection, or a client that sends
-/// (syn) only when all of its team have joined, must not stop the match.
+/// once more answerWait for each answer, half as long for each agent that did not answer: what a client gets while it
+/// joins does not depend on how fast it is, and one that never answers costs one answerWait. It does not wait for
+/// others: an idle connection, or a client that sends (syn) only when all of its team have joined, must not stop the
+/// match.
 ///
 /// Some clients answer with several messages: (init ...), (syn), (syn). Until its first cycle with a sync predicate is
 /// over an agent has answered when it has been silent for joinPace.
@@ -51,8 +52,9 @@ class LockstepGate {
 
  private:
   double waited(Clock::time_point last) const;
-  bool hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins, AgentLog& log) const;
-  double patience(const Participant& p, const Limits& limits, bool anyJoins) const;
+  bool hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins, int lapsed,
+                   AgentLog& log) const;
+  double patience(const Participant& p, const Limits& limits, bool anyJoins, int lapsed) const;
   bool isUntrusted(const Participant& p, const Limits& limits, Clock::time_point last) const;
   bool mustPace(const List& participants, const Limits& limits, Clock::time_point last) const;
   bool waitForUntrusted(const List& participants, Look look);

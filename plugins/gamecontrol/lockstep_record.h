@@ -36,7 +36,7 @@ class LockstepRecord {
   }
   /// Counts the answer to the last turn, if there was one. Call it before beginTurn(). `trust`: it counts for trust.
   void countAnswer(bool trust) {
-    if (!answered()) giveUp();
+    if (!bound_ && !answered()) giveUp();
     if (trust) answers_ += bound_ ? syncs_ > 0 : messages_ > 0 && told_ > 0;
   }
   /// An agent that is not bound has left a message unanswered: it is not waited for until it sends a sync predicate.
@@ -75,6 +75,8 @@ class LockstepRecord {
   bool pledged() const { return pledged_; }
   /// It had sent one before this turn's percepts arrived.
   bool bound() const { return bound_; }
+  /// Before its first sync predicate it left a message unanswered.
+  bool lapsed() const { return lapsed_; }
   /// It is bound, or has answered every message so far.
   bool attentive() const { return pledged_ || !lapsed_; }
   /// It has answered in this cycle, or need not.

@@ -179,6 +179,8 @@ class Participant {
   bool observes() const { return canSync() && !lockstep_.bound(); }
   /// It has ever sent a sync predicate.
   bool pledged() const { return lockstep_.pledged(); }
+  /// It left a message unanswered before it sent one.
+  bool lapsed() const { return lockstep_.lapsed(); }
   /// It has answered all messages of this cycle.
   bool answered() const { return lockstep_.answered(); }
   /// Number of cycles that it has answered.

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "api/inputs.h"
 #include "arena.h"
@@ -160,6 +161,22 @@ TEST_CASE("A client that stops answering before its first (syn) is waited for lo
   a.cycle();
   REQUIRE_FALSE(a.blockedFor(0.02));
   REQUIRE(a.agents() == 1);
+}
+
+TEST_CASE("Each agent that was waited for in vain halves the wait for others, as long as it is there") {
+  WaitingArena a;
+  std::vector<Client> silent;
+  for (int i = 0; i < 3; ++i) {
+    Client& c = silent.emplace_back(a.client());
+    c.send("(scene robot)");
+    a.until([&] { return a.clock.advance(WaitingArena::kPace), !c.drain().empty(); });
+    REQUIRE(a.blockedFor(std::ldexp(0.8, -i)));
+    REQUIRE_FALSE(a.blockedFor(std::ldexp(0.3, -i)));
+  }
+  silent.clear();
+  a.until([&] { return a.clock.advance(WaitingArena::kPace), a.agents() == 0; });
+  Client last = a.joined();
+  REQUIRE(a.blockedFor(0.9));
 }
 
 TEST_CASE("A client that answers before its first (syn) and leaves lets the simulation continue") {
