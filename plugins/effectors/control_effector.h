@@ -90,23 +90,30 @@ class ActuatorEffector : public Effector {
     d.property("mostForce", &E::mostForce_).unit("Nm").doc("Largest force of this actuator; on a slider N.");
     d.property("least", &E::least_).unit("1").doc("Minimum control; smaller values are clamped to it.");
     d.property("most", &E::most_).unit("1").doc("Maximum control; larger values are clamped to it.");
-    d.property("control", &E::control_).unit("1").state().doc("The control u.");
+    d.property("control", &E::control, &E::setControl).unit("1").savedByClass().doc("The control u.");
   }
   std::string act(const Element& action) override {
-    IJoint* const joint = joint_.get();
-    if (!joint) return "expected a joint above it, found none";
+    if (!joint_.get()) return "expected a joint above it, found none";
     NumberArguments read(action);
-    if (double u = 0; read(0, u)) {
-      control_ = u;
-      engine::Control sum;
-      for (const auto& sibling : parent()->children())
-        if (const auto actuator = sibling->as<ActuatorEffector>()) actuator->addTo(sum);
-      joint->control(0, sum);
-    }
+    if (double u = 0; read(0, u)) setControl(u);
     return read.remark();
   }
 
+ protected:
+  void saveState(StateWriter& out) const override { out.write(control_); }
+  void loadState(StateReader& in) override { control_ = in.readNumber(); }
+
  private:
+  double control() const { return control_; }
+  void setControl(double u) {
+    control_ = u;
+    IJoint* const joint = joint_.get();
+    if (!joint) return;
+    engine::Control sum;
+    for (const auto& sibling : parent()->children())
+      if (const auto actuator = sibling->as<ActuatorEffector>()) actuator->addTo(sum);
+    joint->control(0, sum);
+  }
   void addTo(engine::Control& sum) const {
     const double u = std::max(least_, std::min(most_, control_));
     sum.maxForce = std::min(sum.maxForce, maxForce_);

@@ -176,7 +176,7 @@ void makePieces(World& w) {
     include "house.lua"
     include "materials.lua"
     files() scene() materials() physics() simulation()
-    for _, name in ipairs { "gamecontrol", "monitor", "sensors", "soccer", "sounds" } do plugin(name) end
+    for _, name in ipairs { "gamecontrol", "monitor", "sensors", "effectors", "soccer", "sounds" } do plugin(name) end
   )lua");
   call(make(w, "PlaneCollider", "ground"), "setParams", {0.0, 0.0, 1.0, 0.0});
   make(w, "ContactJointHandler", "ground/solid");
@@ -187,6 +187,7 @@ void makePieces(World& w) {
     call(make(w, joint, other + "/joint"), "attach", {"../../" + one + "/body", "../body"});
     x += 2;
   }
+  make(w, "ActuatorEffector", "SliderJoint2/joint/push");
   makeBox(w, "walker", {0, 4, 0.5});
   make(w, "FPSController", "walker/body/legs");
   makeBox(w, "feeler", {2, 4, 0.5});
@@ -211,6 +212,7 @@ void inputPieces(World& w, int cycle) {
   if (cycle % 30 == 7) call(w.at("/sys/variables/Status"), "set", {"score", List{cycle, 1}});
   if (cycle == 10)
     setProperty(at("walker/body/legs"), "HAngle", 30.0), setProperty(at("walker/body/legs"), "forward", 0.5);
+  if (cycle == 15) setProperty(at("SliderJoint2/joint/push"), "control", 0.5);
   if (cycle == 20) call(at("flag"), "setLocalPos", {1.0, 2.0, 0.0}), call(at("mark"), "setMaterial", {"matYellow"});
 }
 

@@ -293,6 +293,10 @@ TEST_CASE("an actuator's control sets a force in addition to its spring and damp
   CHECK(law.force == 3 * 2 + 0.5);
   CHECK(robot.act(turn, "(turn -99)").empty());
   CHECK(law.force == 3 * -1 + 0.5);
+  // A script may set the control, too.
+  setProperty(turn, "control", 0.5);
+  CHECK(law.force == 3 * 0.5 + 0.5);
+  CHECK(getProperty(turn, "control").toNumber() == 0.5);
 }
 
 TEST_CASE("actuators of one joint add up, and a control can set stiffness and damping") {

@@ -2,7 +2,10 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "actuator_builder.h"
+#include "api/agents.h"
 #include "body_builder.h"
 #include "constraint_builder.h"
 #include "construction.h"
@@ -28,6 +31,27 @@ Leaf* worldAround(Node& node) {
   return nullptr;
 }
 
+/// True if a node of that class is below `node`.
+bool hasBelow(const Node& node, std::string_view className) {
+  return std::any_of(node.children().begin(), node.children().end(), [&](const auto& child) {
+    const Node* const inner = child->asNode();
+    return child->classObject()->name() == className || (inner && hasBelow(*inner, className));
+  });
+}
+
+/// The robot of an agent can say that it has answered, so that lockstep waits for it, and senses the time.
+void makeAgentParts(Construction& c, Node& root) {
+  const AgentAspect* const nearest = root.as<AgentAspect>();
+  const AgentAspect* const agent = nearest ? nearest : root.ancestor<AgentAspect>();
+  if (!agent) return;
+  const auto make = [&](const char* className, const char* name) {
+    if (!hasBelow(*agent, className) && c.has(className)) c.top.create(className, c.names.unprefixed(c.top, name, ""));
+  };
+  c.names.effector("syn");  // an actuator of that name gets another one
+  make("AgentSyncEffector", "syn");
+  make("TimePerceptor", "time");
+}
+
 }  // namespace
 
 void Builder::build(Node& root) {
@@ -40,6 +64,7 @@ void Builder::build(Node& root) {
     BodyBuilder(c).build();
     GeomBuilder(c).build();
     ConstraintBuilder(c).build();
+    makeAgentParts(c, root);
     ActuatorBuilder(c).build();
     SensorBuilder(c).build();
     withoutParts_ = c.withoutParts;
