@@ -54,16 +54,34 @@ class ControlEffector : public Effector {
     else
       law.damping = damping;
     joint->control(0, law);
+    watch(joint->angleRate(0) - law.velocity, damping > 0 || stiffness > 0);
     return read.remark();
   }
 
  private:
+  /// A controller that is too stiff for the inertia that it moves drives its joint away faster and faster: the error of
+  /// its rate grows by the same factor from command to command, which no load does for long.
+  void watch(double error, bool controls) {
+    constexpr double kFactor = 1.5, kFast = 10;  // rad/s, on a slider m/s
+    constexpr int kCommands = 4;
+    growth_ = controls && std::abs(error) > kFactor * std::abs(lastError_) ? growth_ + 1 : 0;
+    lastError_ = error;
+    if (growth_ >= kCommands && std::abs(error) > kFast)
+      refuse(0, [&] {
+        return std::string(
+            "its joint turns faster with each command: the gains are too high for the inertia that it moves. Expected "
+            "a smaller stiffness or damping, or shorter steps of the world (World.timestep).");
+      });
+  }
   double limited(int part, double v) const { return std::max(least_[part], std::min(most_[part], v)); }
   bool isBounded(int part) const { return std::isfinite(leastForces_[part]) || std::isfinite(mostForces_[part]); }
   Link<IJoint> joint_;
   double maxForce_ = HUGE_VAL, reference_ = 0;
   Vec3 gears_{1, 1, 1}, least_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, most_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   Vec3 leastForces_{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}, mostForces_{HUGE_VAL, HUGE_VAL, HUGE_VAL};
+  // For the line in the log alone.
+  double lastError_ = 0;
+  int growth_ = 0;
 };
 
 /// `(name u)`: a MuJoCo actuator on the joint above it. It applies the force gain u + bias - (stiffness + gainStiffness

@@ -1,9 +1,11 @@
-// Each model of this folder moves in Spark as in MuJoCo alone, or expected.txt says why not.
+// Each model of this folder moves in Spark as in MuJoCo alone, or expected.txt says why not: those in MJCF, those in
+// URDF (urdf/), which MuJoCo reads as well, and those of Webots (webots/), each beside a twin in MJCF of the same name.
 //
-// A model is loaded by libmujoco and by the importer, with MujocoEngine, and moves for 1 s in steps of its own length.
-// All controls are 0.3. At 0.1, 0.5 and 1 s the coordinates of all joints, and the centres of mass and rotations of all
-// bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names. A reason that begins with "rounding:
-// " is checked: MuJoCo alone does not agree with itself when it starts 1e-15 beside.
+// A model is loaded by libmujoco and by its importer, with MujocoEngine, and moves for 1 s in steps of its own length.
+// All controls are 0.3, or in URDF and Webots' language, whose joints have no actuators in MuJoCo, the force of each
+// joint with an effector. At 0.1, 0.5 and 1 s the coordinates of all joints, and the centres of mass and rotations of
+// all bodies, must agree to 1e-6. Bodies, joints and actuators of a model need names. A reason that begins with
+// "rounding: " is checked: MuJoCo alone does not agree with itself when it starts 1e-15 beside.
 //
 // SPARK_MODEL=path runs one other file, whatever lies around it: its bodies are compared by their order, and what has
 // no name is left out otherwise. `test-models "[file]"` prints the row of that file.
@@ -44,6 +46,14 @@ std::string treeName(std::string name) {
   return name;
 }
 
+bool isMjcf(const std::string& file) { return file.ends_with(".xml"); }
+
+/// What MuJoCo reads of a model.
+fs::path oracleFile(const std::string& file) {
+  fs::path path = kFolder / file;
+  return path.extension() == ".wbt" ? path.replace_extension(".xml") : path;
+}
+
 struct BodyPose {
   Vec3 center;
   Mat3 rotation;  ///< since the start: a body whose frame the file does not give may have another one
@@ -68,10 +78,11 @@ struct Oracle {
   mjModel* m = nullptr;
   mjData* d = nullptr;
   std::string error;
+  const bool drivesJoints;
 
-  explicit Oracle(const fs::path& file) {
+  explicit Oracle(const std::string& name) : drivesJoints(!isMjcf(name)) {
     char text[1000] = "";
-    m = mj_loadXML(file.c_str(), nullptr, text, sizeof text);
+    m = mj_loadXML(oracleFile(name).c_str(), nullptr, text, sizeof text);
     if (!m) error = text;
     if (m) d = mj_makeData(m);
   }
@@ -96,6 +107,8 @@ struct Oracle {
     mj_comPos(m, d);
     const Snapshot start = snapshot();
     for (int i = 0; i < m->nu; ++i) d->ctrl[i] = kControl;
+    for (int j = 0; drivesJoints && j < m->njnt; ++j)
+      if (m->jnt_type[j] == mjJNT_HINGE || m->jnt_type[j] == mjJNT_SLIDE) d->qfrc_applied[m->jnt_dofadr[j]] = kControl;
     long step = 0;
     for (const double time : kTimes) {
       for (; step < stepAt(time, m->opt.timestep); ++step) mj_step(m, d);
@@ -136,8 +149,9 @@ struct ModelHost : TestHost {
   Node* scene = nullptr;
 
   explicit ModelHost(const std::string& file, const std::string& engine) {
-    for (const char* plugin : {"files", "scene", "scene-mjcf", "physics", "physics-mujoco", "physics-ode",
-                               "physics-articulated", "gamecontrol", "sensors", "effectors"})
+    for (const char* plugin :
+         {"files", "scene", "scene-mjcf", "scene-urdf", "scene-webots", "physics", "physics-mujoco", "physics-ode",
+          "physics-articulated", "gamecontrol", "sensors", "effectors"})
       kernel.plugins().use(plugin);
     kernel.events().define(phase::kPrepare, Order::childrenFirst, "before the step");
     kernel.events().define(phase::kPhysics, Order::parentsFirst, "the step");
@@ -146,6 +160,8 @@ struct ModelHost : TestHost {
     setProperty(kernel.create("DirectoryFileSystem", "/sys/server/file/models"), "path", kFolder.string());
     kernel.create("SceneServer", "/sys/server/scene");
     kernel.create("MjcfImporter", "/sys/server/scene/mjcf");
+    kernel.create("UrdfImporter", "/sys/server/scene/urdf");
+    kernel.create("WebotsImporter", "/sys/server/scene/webots");
     kernel.create("PhysicsServer", "/sys/server/physics");
     if (engine != "MujocoEngine") kernel.create("OdeCollision", "/sys/server/physics/collision");
     kernel.create(engine, "/sys/server/physics/engine");
@@ -240,7 +256,7 @@ void compare(const Snapshot& expected, const Snapshot& found, double time, Resul
 
 Result resultOf(const std::string& file, const std::string& engine, std::span<const double> times) {
   Result r;
-  Oracle oracle(kFolder / file);
+  Oracle oracle(file);
   if (!oracle.m) throw Error(fmt::format("MuJoCo refuses {}: {}", file, oracle.error));
   // Before the plugin is loaded, whose callbacks would count here too.
   const Motion expected = oracle.move();
@@ -265,7 +281,7 @@ Result resultOf(const std::string& file, const std::string& engine, std::span<co
 /// How far MuJoCo's own motion is from itself when it starts a rounding beside.
 Result roundingOf(const std::string& file) {
   Result r;
-  const Motion exact = Oracle(kFolder / file).move(), beside = Oracle(kFolder / file).move(1e-15);
+  const Motion exact = Oracle(file).move(), beside = Oracle(file).move(1e-15);
   for (std::size_t i = 0; i < exact.size(); ++i) compare(exact[i], beside[i], kTimes[i], r);
   return r;
 }
@@ -284,15 +300,17 @@ std::map<std::string, std::string> rowsOf(const char* table) {
 
 std::vector<std::string> modelFiles() {
   std::vector<std::string> files;
-  for (const auto& entry : fs::directory_iterator(kFolder))
-    if (entry.path().extension() == ".xml") files.push_back(entry.path().filename().string());
+  for (const auto& [folder, ending] : {std::pair{".", ".xml"}, {"urdf", ".urdf"}, {"webots", ".wbt"}})
+    for (const auto& entry : fs::directory_iterator(kFolder / folder))
+      if (entry.path().extension() == ending)
+        files.push_back((folder / entry.path().filename()).lexically_normal().string());
   std::sort(files.begin(), files.end());
   return files;
 }
 
 }  // namespace
 
-TEST_CASE("Models in MJCF move as in MuJoCo alone, or a table says why not") {
+TEST_CASE("Models of all languages move as in MuJoCo alone, or a table says why not") {
   std::map<std::string, std::string> rows = rowsOf("expected.txt");
   std::size_t loads = 0, agrees = 0;
   const std::vector<std::string> files = modelFiles();
@@ -324,7 +342,7 @@ TEST_CASE("Models in MJCF move as in MuJoCo alone, or a table says why not") {
   CHECK(files.size() >= 60);
 }
 
-TEST_CASE("Models in MJCF move nearly as in MuJoCo with the other engines, or a table says why not") {
+TEST_CASE("Models of all languages move nearly as in MuJoCo with the other engines, or a table says why not") {
   constexpr double kNearly = 5e-3;  // after 0.1 s
   std::map<std::string, std::string> rows = rowsOf("engines.txt");
   for (const std::string& file : modelFiles()) {

@@ -81,10 +81,13 @@ TEST_CASE("The arm of docs/first-robot.md is driven in lockstep, from a file of 
     }
   }
   SECTION("the robots of the other configs, by an agent that only waits for its turns") {
-    for (const auto& [config, joint] : {std::pair{"mjcf.lua", "Left_Elbow_Yaw"}, {"webots.lua", "mast_angle"}}) {
-      std::string text =
-          replaced(replaced(textOf(program), "(scene rsg/robots/arm.urdf)", ""), "(elbow 45 0 200 5 0)", "");
-      text = replaced(text, "angles[\"elbow\"]", "angles[\"" + std::string(joint) + "\"]");
+    struct Case {
+      std::string config, file, joint;
+    };
+    for (const auto& [config, file, joint] :
+         {Case{"mjcf.lua", "rsg/robots/t1.xml", "q_hj1"}, {"webots.lua", "rsg/robots/rover.wbt", "mast_angle"}}) {
+      std::string text = replaced(replaced(textOf(program), "rsg/robots/arm.urdf", file), "(elbow 45 0 200 5 0)", "");
+      text = replaced(text, "angles[\"elbow\"]", "angles[\"" + joint + "\"]");
       const Run run(folder.write("two.py", text), "60", {"--config", config});
       CAPTURE(config, run.robot.out, run.robot.errors, run.log);
       CHECK(run.robot.code == 0);

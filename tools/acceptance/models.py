@@ -1,4 +1,4 @@
-"""The milestone `models`: small MJCF models move as in MuJoCo, and what does not is named."""
+"""The milestone `models`: small models in MJCF, URDF and the language of Webots move as in MuJoCo, and what does not is named."""
 import re
 import subprocess
 
@@ -6,7 +6,7 @@ from acceptance.common import FAIL, OPEN, PASS, ROOT, tests
 
 PROGRAM = ROOT / "build/release/tests/test-models"
 AGREE = 0.9  # of all models
-ROW = re.compile(r"(\S+\.xml) \| (loads|REFUSED) \| (agrees|DIFFERS) \| (\S+)(?: ([^|]*))? \| (.*?)(?: \[(.*)\])?$")
+ROW = re.compile(r"(\S+\.(?:xml|urdf|wbt)) \| (loads|REFUSED) \| (agrees|DIFFERS) \| (\S+)(?: ([^|]*))? \| (.*?)(?: \[(.*)\])?$")
 
 rows = None
 
@@ -29,8 +29,9 @@ def loads():
     found = measure()
     good = sum(r[1] == "loads" for r in found)
     refused = [r[0] for r in found if r[1] != "loads"]
-    measured = f"{good} of {len(found)} load" + (f"; refused: {', '.join(refused)}" if refused else "")
-    return measured, PASS if found and good == len(found) and len(found) >= 60 else FAIL
+    kinds = ", ".join(f"{sum(r[0].endswith(e) for r in found)} {e}" for e in (".xml", ".urdf", ".wbt"))
+    measured = f"{good} of {len(found)} load ({kinds})" + (f"; refused: {', '.join(refused)}" if refused else "")
+    return measured, PASS if good == len(found) >= 60 and " 0 ." not in f" {kinds}" else FAIL
 
 
 def agree():
@@ -53,5 +54,5 @@ POINTS = {
     "1": ("what MuJoCo loads is loaded", loads),
     "2": ("motions agree", agree),
     "3": ("differences are named", named),
-    "4": ("tests of the importer", lambda: tests("models", "scene-mjcf-.*")),
+    "4": ("tests of the importer", lambda: tests("models", "scene-mjcf-.*", "scene-urdf.*", "scene-webots.*")),
 }

@@ -265,6 +265,21 @@ TEST_CASE("invalid commands of a control effector are refused and change nothing
   CHECK(law.force == 0);
 }
 
+TEST_CASE("gains that make a joint faster and faster are named, once") {
+  Robot robot;
+  auto& he1 = robot.add(engine::JointType::hinge, "ControlEffector", "he1");
+  const auto command = [&](double rate, const char* message = "(he1 0 0 0 0.5 0)") {
+    robot.joint->rates[0] = rate;
+    CHECK(robot.act(he1, message).empty());
+  };
+  for (const double rate : {1.0, 3.0, 5.0, 7.0, 9.0, 11.0, 13.0}) command(rate);                // a load
+  for (const double rate : {1.0, 2.0, 4.0, 8.0, 16.0, 32.0}) command(rate, "(he1 0 0 0 0 3)");  // no controller
+  CHECK(robot.text.empty());
+  for (const double rate : {1.0, -2.0, 4.0, -8.0, 16.0, -32.0, 64.0}) command(rate);
+  CHECK_THAT(robot.text, Catch::Contains("the gains are too high for the inertia that it moves"));
+  CHECK(std::count(robot.text.begin(), robot.text.end(), '\n') == 1);
+}
+
 TEST_CASE("an actuator's control sets a force in addition to its spring and damping") {
   Robot robot;
   auto& turn = robot.add(engine::JointType::hinge, "ActuatorEffector", "turn");
