@@ -22,6 +22,7 @@ class Bias : public NumberModifier {
   }
 
  protected:
+  bool adds() const override { return true; }
   double change(double value, std::size_t index, const Event&) override {
     while (drawn_.size() <= index) drawn_.push_back(random_.normal());
     return value + mean_ + sigma_ * drawn_[index];

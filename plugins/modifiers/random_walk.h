@@ -25,6 +25,7 @@ class RandomWalk : public NumberModifier {
   }
 
  protected:
+  bool adds() const override { return true; }
   double change(double value, std::size_t index, const Event& event) override {
     while (walks_.size() <= index) walks_.push_back({0, event.time});
     Walk& walk = walks_[index];

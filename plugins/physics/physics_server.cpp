@@ -16,6 +16,7 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   using S = PhysicsServer;
   d.doc("Steps the world of a scene with the engine below it.");
   d.implements<IPhysicsServer>();
+  d.implements<IHearing>();
   d.link(&S::scenes_, At<ISceneServer>());
   d.link(&S::engine_, Child<engine::IEngine>());
   d.link(&S::collision_, Child<engine::ICollision>());
@@ -334,6 +335,23 @@ void PhysicsServer::overlaps(const Vec3& center, double radius, std::vector<ICol
   else
     physics::findOverlaps(world.model(), world.state(), center, radius, geoms);
   for (const engine::Index i : geoms) out.push_back(&colliderOf(world.model().geoms[i].owner));
+}
+
+void PhysicsServer::listen(const SoundCone& cone, int rings, const Node* except, std::vector<Echo>& out) {
+  const physics::WorldModel& world = expectWorld();
+  if (!cone.apex.allFinite() || !cone.axis.allFinite() || !(cone.axis.norm() > 0) || !(cone.range >= 0)) return;
+  if (!rays_.isCurrent(world.model(), world.poses())) {
+    const std::lock_guard lock(raysUpdate_);
+    rays_.update(world.model(), world.state(), world.poses());
+  }
+  const auto counts = [&](const engine::Geom& g) { return !except || !isBelow(colliderOf(g.owner).leaf(), *except); };
+  const physics::Accepts accepts = std::cref(counts);
+  thread_local std::vector<physics::RayScene::GeomEcho> heard;
+  heard.clear();
+  const double angle = std::clamp(cone.halfAngle, 0.0, kPi);
+  rays_.listen({cone.apex, cone.axis.normalized(), std::cos(angle), std::sin(angle), cone.range}, rings, accepts,
+               heard);
+  for (const auto& echo : heard) out.push_back({&colliderOf(world.model().geoms[echo.geom].owner), echo.distance});
 }
 
 void PhysicsServer::reportFaults() {

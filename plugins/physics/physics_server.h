@@ -9,6 +9,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "api/sound_cone.h"
 #include "collider.h"
 #include "effects.h"
 #include "handlers.h"
@@ -18,7 +19,7 @@ namespace spark {
 
 /// Steps the world of a scene, by default of the active one. Its child `collision` detects contacts, its child `engine`
 /// solves them. Several servers step several scenes, each with an engine of its own.
-class PhysicsServer : public Node, public IPhysicsServer {
+class PhysicsServer : public Node, public IPhysicsServer, public IHearing {
   SPARK_CLASS(PhysicsServer, Node)
  public:
   static void describe(Description<PhysicsServer>& d);
@@ -31,6 +32,7 @@ class PhysicsServer : public Node, public IPhysicsServer {
   void prepareRays() override;
   bool hasWorld() override { return currentWorld() != nullptr; }
   void overlaps(const Vec3& center, double radius, std::vector<ICollider*>& out) override;
+  void listen(const SoundCone& cone, int rings, const Node* except, std::vector<Echo>& out) override;
   ICollider& colliderOf(void* owner) const override { return *static_cast<Collider*>(owner); }
   /// Throws Error, with what to do, unless there are an engine and a collision detection.
   void expectEngines() const;

@@ -1,7 +1,9 @@
 #include "ray_scene.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
+#include "api/math.h"
 #include "shape_ray.h"
 
 namespace spark::physics {
@@ -170,6 +172,76 @@ void RayScene::findOverlaps(const Vec3& center, double radius, std::vector<Index
   for (std::size_t i = bounded_; i < placed_.size(); ++i) visit(placed_[i]);
   tree_.near(center, std::max(radius, 0.0), [&](std::uint32_t i) { visit(placed_[i]); });
   std::sort(out.begin() + first, out.end());
+}
+
+/// The nearest point of a geom in the cone, relative to the apex, world frame.
+std::optional<Vec3> RayScene::nearestIn(const Cone& cone, const Placed& p) const {
+  const ShapeDescription& shape = p.geom->shape;
+  const Vec3 to = p.position - cone.apex;
+  if (shape.shape != Shape::plane && to.norm() > reach(shape) + cone.range) return std::nullopt;
+  Cone local = cone;
+  local.apex = p.toShape * -to;
+  local.axis = p.toShape * cone.axis;
+  const auto near = [&](const Vec3& center, double radius, const std::function<void(std::uint32_t)>& visit) {
+    p.triangles->near(center, radius, visit);
+  };
+  const auto found = nearestInCone(shape, local, near);
+  if (!found) return std::nullopt;
+  return Vec3(p.toShape.transpose() * *found);
+}
+
+/// The distance to a geom whose nearest point is `nearest`, if that is not hidden; otherwise to the nearest of points
+/// spread over it that are seen in the cone.
+std::optional<double> RayScene::visibleFrom(const Cone& cone, const Placed& p, const Vec3& nearest,
+                                            const Accepts& accepts) const {
+  constexpr double kAtSurface = 1e-6;  // m: rounding
+  const double distance = nearest.norm();
+  if (distance <= kAtSurface) return 0;
+  const auto first = castRay(cone.apex, nearest / distance, distance + kAtSurface, accepts);
+  if (!first || first->geom == p.index || first->distance >= distance - kAtSurface)
+    return first && first->geom == p.index ? std::min(first->distance, distance) : distance;
+  std::vector<Vec3> points;
+  spreadPoints(p.geom->shape, points);
+  std::optional<double> seen;
+  for (const Vec3& point : points) {
+    const Vec3 to = p.position + p.toShape.transpose() * point - cone.apex;
+    const double length = to.norm();
+    if (!(length > 0) || !cone.contains(to)) continue;
+    const auto hit = castRay(cone.apex, to / length, cone.range, accepts);
+    if (hit && hit->geom == p.index && (!seen || hit->distance < *seen)) seen = hit->distance;
+  }
+  return seen;
+}
+
+void RayScene::listen(const Cone& cone, int rings, const Accepts& accepts, std::vector<GeomEcho>& out) const {
+  const auto first = static_cast<std::ptrdiff_t>(out.size());
+  const auto visit = [&](const Placed& p) {
+    if (accepts && !accepts(*p.geom)) return;
+    if (const auto nearest = nearestIn(cone, p))
+      if (const auto distance = visibleFrom(cone, p, *nearest, accepts)) out.push_back({p.index, *distance});
+  };
+  for (std::size_t i = bounded_; i < placed_.size(); ++i) visit(placed_[i]);
+  tree_.near(cone.apex, cone.range, [&](std::uint32_t i) { visit(placed_[i]); });
+  // What is hidden where it is nearest.
+  const double widest = std::atan2(cone.sine, cone.cosine);
+  const Vec3 right = cone.axis.unitOrthogonal(), up = cone.axis.cross(right);
+  for (int ring = 0; ring <= rings; ++ring) {
+    const double aside = ring > 0 ? widest * ring / rings : 0;
+    const int rays = std::max(1, 6 * ring);
+    for (int i = 0; i < rays; ++i) {
+      const double around = 2 * kPi * i / rays;
+      const Vec3 direction =
+          std::cos(aside) * cone.axis + std::sin(aside) * (std::cos(around) * right + std::sin(around) * up);
+      if (const auto hit = castRay(cone.apex, direction, cone.range, accepts))
+        out.push_back({hit->geom, hit->distance});
+    }
+  }
+  std::sort(out.begin() + first, out.end(), [](const GeomEcho& a, const GeomEcho& b) {
+    return a.geom != b.geom ? a.geom < b.geom : a.distance < b.distance;
+  });
+  out.erase(std::unique(out.begin() + first, out.end(),
+                        [](const GeomEcho& a, const GeomEcho& b) { return a.geom == b.geom; }),
+            out.end());
 }
 
 bool RayScene::meets(const Vec3& from, const Vec3& direction, double length, const Accepts& accepts) const {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "box_tree.h"
+#include "cone.h"
 #include "queries.h"
 
 namespace spark::physics {
@@ -37,6 +38,13 @@ class RayScene {
 
   /// As physics::findOverlaps().
   void findOverlaps(const Vec3& center, double radius, std::vector<engine::Index>& out) const;
+  /// A geom, and the distance to its nearest point that is in a cone and not hidden [m].
+  struct GeomEcho {
+    engine::Index geom;
+    double distance;
+  };
+  /// Appends the geoms that are heard in a cone of the world frame, in order; see IHearing::listen().
+  void listen(const Cone& cone, int rings, const Accepts& accepts, std::vector<GeomEcho>& out) const;
 
  private:
   struct Stamp {
@@ -61,6 +69,9 @@ class RayScene {
   };
   void collect(const engine::Model& model);
   void place(const engine::Model& model, const engine::State& state);
+  std::optional<Vec3> nearestIn(const Cone& cone, const Placed& placed) const;
+  std::optional<double> visibleFrom(const Cone& cone, const Placed& placed, const Vec3& nearest,
+                                    const Accepts& accepts) const;
   bool cast(const Placed& placed, const Vec3& from, const Vec3& direction, double length, GeomHit& hit) const;
   /// Calls `visit(placed)` for the geoms that the ray may meet; see BoxTree::meet().
   template <class Visit>

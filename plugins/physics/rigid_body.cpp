@@ -10,6 +10,7 @@ void RigidBody::describe(Description<RigidBody>& d) {
   using B = RigidBody;
   d.doc("A rigid body: it moves the nearest transform above it.");
   d.implements<IRigidBody>();
+  d.implements<IPlacedBody>();
   d.implements<IFollowsTransform>();
   d.implements<ISceneCalls>();
   d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass. Setting it scales the inertia as well.");
@@ -132,6 +133,10 @@ engine::BodyState RigidBody::state() const {
   return {p.position, Vec3::Zero(), Vec3::Zero(), p.rotation};
 }
 
+Vec3 RigidBody::worldGravity() const {
+  return world_ ? world_->model().parameters.gravity : engine::WorldParameters().gravity;
+}
+
 void RigidBody::wake() {
   placed_ = false;
   if (!world_->enabled(body_)) world_->setEnabled(body_, true);
@@ -152,13 +157,17 @@ void RigidBody::setPosition(const Vec3& position) {
 
 void RigidBody::setVelocity(const Vec3& v) {
   if (!world_) return;
+  const Vec3 before = world_->state(body_).linearVelocity;
   world_->setLinearVelocity(body_, v);
+  jumps_.linear += world_->state(body_).linearVelocity - before;
   if (!v.isZero(0)) wake();
 }
 
 void RigidBody::setAngularVelocity(const Vec3& w) {
   if (!world_) return;
+  const Vec3 before = world_->state(body_).angularVelocity;
   world_->setAngularVelocity(body_, w);
+  jumps_.angular += world_->state(body_).angularVelocity - before;
   if (!w.isZero(0)) wake();
 }
 

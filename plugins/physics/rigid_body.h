@@ -3,6 +3,7 @@
 /// Rigid bodies.
 
 #include "api/mass.h"
+#include "api/placed_body.h"
 #include "api/scene_calls.h"
 #include "world.h"
 
@@ -20,7 +21,7 @@ class Body : public PhysicsObject {
 
 /// A rigid body. It takes its pose from the nearest transform when it is linked; after each step that transform takes
 /// the pose of the body.
-class RigidBody : public Body, public IRigidBody, public IFollowsTransform, public ISceneCalls {
+class RigidBody : public Body, public IRigidBody, public IPlacedBody, public IFollowsTransform, public ISceneCalls {
   SPARK_CLASS(RigidBody, Body)
  public:
   static void describe(Description<RigidBody>& d);
@@ -40,6 +41,9 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform, publ
   void enable() override;
   Transform* bodyTransform() const override { return transform(); }
   void follow(const Matrix& world) override;
+  const Jumps& jumps() const override { return jumps_; }
+  Vec3 worldGravity() const override;
+  bool exactReplay() const override { return world_ && world_->model().exactReplay; }
   std::vector<SceneCall> sceneCalls() const override;
   std::vector<std::string_view> setByCalls() const override { return {"mass", "position"}; }
 
@@ -139,6 +143,7 @@ class RigidBody : public Body, public IRigidBody, public IFollowsTransform, publ
   bool gravity_ = true;
   bool placed_ = false;  ///< the body sleeps and its transform is up to date
   unsigned faults_ = 0;  ///< resets
+  Jumps jumps_;          ///< see IPlacedBody::jumps()
 };
 
 }  // namespace spark

@@ -54,6 +54,7 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
   f.actuation = f.actuation && on("actuation");
   f.clampControl = f.clampControl && on("clampctrl");
   f.equality = f.equality && on("equality");
+  f.sensorNoise = f.sensorNoise || on("sensornoise", "disable");
   if (!on("constraint")) f.contact = f.limit = f.frictionLoss = f.equality = false;
   const auto set = [&](const char* property, Value v, bool ofMujoco = false) {
     model.options.push_back({e, property, std::move(v), ofMujoco});
@@ -68,7 +69,7 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
   for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
     refuse(name, on(name, "disable"), "enable");
   // Without effect here: there is nothing that they switch, or results are the same.
-  a.ignore({"warmstart", "sensor", "energy", "fwdinv", "sensornoise", "autoreset"});
+  a.ignore({"warmstart", "sensor", "energy", "fwdinv", "autoreset"});
   a.finish();
 }
 

@@ -393,7 +393,9 @@ void Reader::sensor(const Element& e) {
     if (s.object.empty()) s.object = a.text(object);
   s.objectType = a.text("objtype");
   s.reference = a.text("refname");
-  a.ignore({"noise", "user", "reftype", "body", "actuator", "tendon", "dim", "datatype", "needstage"});
+  s.noise = a.number("noise", 0);
+  s.cutoff = a.number("cutoff", 0);
+  a.ignore({"user", "reftype", "body", "actuator", "tendon", "dim", "datatype", "needstage"});
   a.finish();
   model_.sensors.push_back(s);
 }

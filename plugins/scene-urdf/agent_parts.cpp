@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include "sensor_reader.h"
+
 namespace spark::urdf {
 
 /// How agents move the joints: as the transmissions say, or each joint if there are none.
@@ -84,29 +86,9 @@ void AgentParts::sensors() {
     for (const mjcf::Joint& j : b.joints)
       if (j.kind == mjcf::JointKind::hinge || j.kind == mjcf::JointKind::slide)
         model_.sensors.push_back({j.from, "jointpos", j.name, j.name, "joint", ""});
-}
-
-/// `<gazebo reference="LINK"><sensor type="imu"/></gazebo>` is where robots have one.
-void AgentParts::imus() {
-  for (const Element& g : childrenOf(root_)) {
-    if (g.tag() != "gazebo") continue;
-    const std::string_view link = g.node.attribute("reference").value();
-    const auto body = std::find_if(model_.bodies.begin() + 1, model_.bodies.end(),
-                                   [&](const mjcf::Body& b) { return b.name == link; });
-    if (body == model_.bodies.end()) continue;
-    for (const Element& e : childrenOf(g)) {
-      if (e.tag() != "sensor") continue;
-      const std::string type = e.node.attribute("type").value(), name = nameOf(e);
-      if (type != "imu") {
-        unsupported_.add(e, fmt::format("a sensor of type '{}' is not supported", type));
-        continue;
-      }
-      const std::string site = name + "_site";
-      body->sites.push_back({site, {}});
-      model_.sensors.push_back({e, "gyro", name + "_gyro", site, "site", ""});
-      model_.sensors.push_back({e, "accelerometer", name + "_acc", site, "site", ""});
-    }
-  }
+  SensorReader reader(model_, unsupported_);
+  for (const Element& e : childrenOf(root_))
+    if (e.tag() == "gazebo") reader.read(e);
 }
 
 }  // namespace spark::urdf

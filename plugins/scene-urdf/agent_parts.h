@@ -16,7 +16,6 @@ class AgentParts {
   void add() {
     drives();
     sensors();
-    imus();
   }
 
  private:
@@ -25,7 +24,6 @@ class AgentParts {
   void reductions(const Element& around);
   void drive(const Element& from, const mjcf::Joint& joint, bool byForceAlone);
   void sensors();
-  void imus();
   const Element root_;
   mjcf::Model& model_;
   Unsupported& unsupported_;

@@ -10,6 +10,9 @@ namespace spark::webots {
 /// Error.
 void readDevice(const Node& node, const Frame& frame, mjcf::Model& model, Reading& reading);
 
+/// Noise and resolution of a PositionSensor. `slides`: its joint slides. Throws Error.
+void readPositionSensor(const Node& node, bool slides, mjcf::Sensor& sensor, Reading& reading);
+
 /// Fields of a device beside those of a solid, which no reader of solids needs to know.
 void ignoreDeviceFields(const Node& node, Fields& fields);
 

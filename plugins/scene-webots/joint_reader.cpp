@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "base_nodes.h"
+#include "device_reader.h"
 
 namespace spark::webots {
 
@@ -168,6 +169,7 @@ void JointReader::nameAndDrive(mjcf::Joint& j, const Devices& d, const std::stri
   f.finish();
   model_.sensors.push_back(
       {d.sensor->element(), "jointpos", orElse(d.sensor->name(), "position sensor"), j.name, "joint", ""});
+  readPositionSensor(*d.sensor, j.kind == mjcf::JointKind::slide, model_.sensors.back(), r_);
 }
 
 void JointReader::drive(mjcf::Joint& j, const Node& motor) {

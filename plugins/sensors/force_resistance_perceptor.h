@@ -9,7 +9,6 @@ namespace spark {
 /// `(FRP (n rf) (c 0.00 -0.02 -0.01) (f 0.00 0.00 22.59))`: centre of pressure [m] and total contact force [N] of the
 /// collider beside it in the last step; no percept when nothing touched. A TouchPerceptorHandler adds contacts after
 /// the solver; the prepare phase clears them before the next step. Point and force are in the frame of its transform.
-/// The local matrix is used for that, as in the installed base: the transforms above a robot's parts are identities.
 class ForceResistancePerceptor : public Perceptor {
   SPARK_CLASS(ForceResistancePerceptor, Perceptor)
  public:
@@ -42,10 +41,10 @@ class ForceResistancePerceptor : public Perceptor {
     // Contacts of sleeping bodies carry no force: the last measured values are repeated.
     if (weight_ > 0) point_ = weightedPoint_ / weight_, force_ = sum_;
 
-    const Matrix local = transform() ? transform()->local() : Matrix(Matrix::Identity());
+    const Matrix here = transform() ? transform()->world() : Matrix(Matrix::Identity());
     out.open("FRP").pair("n", messageName());
-    put(out, "c", intoFrame(local, point_) - intoFrame(local, positionOf(local)));
-    put(out, "f", intoFrame(local, force_));
+    put(out, "c", intoFrame(here, point_) - intoFrame(here, positionOf(here)));
+    put(out, "f", intoFrame(here, force_));
     out.close();
   }
 

@@ -1,12 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "api/agents.h"
 #include "api/camera.h"
+#include "api/modifier.h"
 
 namespace spark {
 
@@ -16,13 +20,14 @@ namespace spark {
 ///
 /// Pictures are drawn in the simulation's thread before the first perceptor senses; the text is made in sense(), for
 /// several agents at once.
-class ImagePerceptor : public Perceptor, public ISharedView {
+class ImagePerceptor : public Perceptor, public ISharedView, public IMeasurement {
   SPARK_CLASS(ImagePerceptor, Perceptor)
  public:
   static void describe(Description<ImagePerceptor>& d) {
     using I = ImagePerceptor;
     d.doc("A camera: (IMG (n name) (s width height) (p picture) (f format) (d base64)). Without a renderer, none.");
     d.implements<ISharedView>();
+    d.implements<IMeasurement>();
     d.link(&I::renderer_, At<ICameraRenderer>(ICameraRenderer::kPath)).doc("What draws; missing: it senses nothing.");
     d.property("width", &I::width_).unit("px").range(1, kMaxEdge).doc("Width of the image.");
     d.property("height", &I::height_).unit("px").range(1, kMaxEdge).doc("Height of the image.");
@@ -46,6 +51,7 @@ class ImagePerceptor : public Perceptor, public ISharedView {
     width_ = width, height_ = height;
   }
 
+  Measured measured() const override { return {Measured::Kind::pixels}; }
   void share(std::uint64_t) override {
     ICameraRenderer* const renderer = renderer_.get();
     fresh_ = false;
@@ -59,9 +65,11 @@ class ImagePerceptor : public Perceptor, public ISharedView {
                              e.what());
     }
   }
-  void sense(Predicates& out, const Event&) override {
+  void sense(Predicates& out, const Event& event) override {
     const ICameraRenderer* const renderer = renderer_.get();
     if (!renderer || !std::exchange(fresh_, false)) return;
+    for (const auto& child : children())
+      if (NumberModifier* const modifier = child->as<NumberModifier>()) change(*modifier, event);
     text_.clear();
     renderer->appendText(taken_, format_, text_);
     out.open("IMG").pair("n", messageName());
@@ -77,6 +85,26 @@ class ImagePerceptor : public Perceptor, public ISharedView {
   }
 
  private:
+  /// Applies a modifier to the pixels: bytes of colours, or millimetres. Where nothing is near enough, nothing changes.
+  void change(NumberModifier& modifier, const Event& event) {
+    if (taken_.kind == PictureKind::colour)
+      return modifier.changePixels(std::span(taken_.pixels), {Measured::Kind::pixels, 0, 255}, event);
+    if (taken_.kind == PictureKind::depth) {
+      depths_.resize(taken_.pixels.size() / 2);
+      std::memcpy(depths_.data(), taken_.pixels.data(), 2 * depths_.size());
+      for (std::uint16_t& depth : depths_)
+        if (depth == kFarthest) depth = 0;
+      modifier.changePixels(std::span(depths_), {Measured::Kind::pixels, 1, kFarthest - 1, 0}, event);
+      auto* const bytes = taken_.pixels.data();
+      for (std::size_t i = 0; i < depths_.size(); ++i)
+        if (depths_[i] != 0) std::memcpy(bytes + 2 * i, &depths_[i], 2);
+      return;
+    }
+    if (!std::exchange(refused_, true))
+      kernel().log().warning("{} ({}) has no effect: the pixels of a segmentation are numbers of what is seen.",
+                             modifier.path(), modifier.classObject()->name());
+  }
+  static constexpr std::uint16_t kFarthest = 65535;  ///< of a depth: that far or farther
   static constexpr int kMaxEdge = 4096;
   static constexpr const char* kKinds[] = {"colour", "depth", "segmentation"};
   static constexpr const char* kFormats[] = {"raw", "png"};
@@ -103,11 +131,13 @@ class ImagePerceptor : public Perceptor, public ISharedView {
   int width_ = 320, height_ = 240;
   double fovDeg_ = 60, zNear_ = 0.1, zFar_ = 50;
   bool offScreen_ = true;
-  Picture taken_;        ///< the last picture
-  bool fresh_ = false;   ///< `taken_` is of this sense phase
-  bool failed_ = false;  ///< a picture failed, which was logged
-  std::string text_;     ///< its text, kept for its memory
-  std::string safe_;     ///< the result of safe()
+  Picture taken_;                      ///< the last picture
+  bool fresh_ = false;                 ///< `taken_` is of this sense phase
+  bool failed_ = false;                ///< a picture failed, which was logged
+  bool refused_ = false;               ///< a modifier has no effect, which was logged
+  std::vector<std::uint16_t> depths_;  ///< of change()
+  std::string text_;                   ///< its text, kept for its memory
+  std::string safe_;                   ///< the result of safe()
 };
 
 }  // namespace spark

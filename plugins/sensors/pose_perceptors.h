@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "api/agents.h"
+#include "api/measurement.h"
 #include "api/scene.h"
 
 namespace spark {
@@ -23,12 +24,14 @@ class PositionPerceptor : public Perceptor {
 };
 
 /// `(quat (n torso_quat) (q 1 0 0 0))`: orientation of its transform in the world frame, as a unit quaternion w x y z.
-class OrientationPerceptor : public Perceptor {
+class OrientationPerceptor : public Perceptor, public IMeasurement {
   SPARK_CLASS(OrientationPerceptor, Perceptor)
  public:
   static void describe(Description<OrientationPerceptor>& d) {
     d.doc("Senses the rotation of its transform in the world: (quat (n name) (q w x y z)), of length 1.");
+    d.implements<IMeasurement>();
   }
+  Measured measured() const override { return {Measured::Kind::rotation}; }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
     const Eigen::Quaterniond q(toPose(transform()->world()).rotation);

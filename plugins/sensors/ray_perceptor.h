@@ -4,13 +4,14 @@
 #include <optional>
 
 #include "api/agents.h"
+#include "api/measurement.h"
 #include "api/physics.h"
 
 namespace spark {
 
 /// Base of sensors that measure distances with rays. Rays start at the sensor's transform and look along its y axis, as
 /// heads do. They meet everything that collides, except the sensor's own agent.
-class RayPerceptor : public Perceptor, public ISharedView {
+class RayPerceptor : public Perceptor, public ISharedView, public IMeasurement {
   SPARK_CLASS(RayPerceptor, Perceptor)
  public:
   static void describe(Description<RayPerceptor>& d) {
@@ -18,6 +19,7 @@ class RayPerceptor : public Perceptor, public ISharedView {
     d.doc("Measures distances with rays.");
     d.abstract();
     d.implements<ISharedView>();
+    d.implements<IMeasurement>();
     d.link(&R::physics_, At<IPhysicsServer>());
     d.property("minRange", &R::minRange_)
         .unit("m")
@@ -29,6 +31,7 @@ class RayPerceptor : public Perceptor, public ISharedView {
         .doc("Largest distance, which is reported, too, where there is no surface.");
     d.method("setRange", &R::setRange).parameters({"min [m]", "max [m]"}).doc("Sets minRange and maxRange.");
   }
+  Measured measured() const override { return {Measured::Kind::numbers, minRange_, maxRange_, maxRange_}; }
   void share(std::uint64_t) override {
     if (IPhysicsServer* const physics = casts() ? physics_.get() : nullptr) physics->prepareRays();
   }
@@ -36,15 +39,20 @@ class RayPerceptor : public Perceptor, public ISharedView {
  protected:
   /// False for sensors that measure without rays.
   virtual bool casts() const { return true; }
-  /// Starts a measurement at the present pose of the transform.
-  void beginMeasuring() {
+  /// Starts a measurement at the present pose of the transform. False if there is nothing to measure.
+  bool beginMeasuring() {
     if (tree_.changed(*this)) {
       auto* const aspect = ancestor<AgentAspect>();
       agent_ = aspect ? &aspect->object() : nullptr;
     }
     ready_ = physics_ && physics_->hasWorld() && transform();
     if (ready_) pose_ = toPose(transform()->world());
+    return ready_;
   }
+  /// The pose of the measurement, world frame.
+  const Pose& pose() const { return pose_; }
+  /// The object of its agent, which it does not sense; nullptr: none.
+  const Node* agent() const { return agent_; }
   /// The first surface in a direction of the sensor's frame (any length above 0), within maxRange.
   std::optional<RayHit> cast(const Vec3& direction) const {
     if (!ready_) return std::nullopt;

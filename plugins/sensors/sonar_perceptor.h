@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "api/match.h"
+#include "api/sound_cone.h"
 #include "ray_perceptor.h"
 #include "spark/random.h"
 
@@ -15,8 +16,8 @@ namespace spark {
 /// first. Missing echoes are reported as `maxRange`.
 ///
 /// As in the installed base, it hears the echo targets (IEchoTarget: other robots, posts) and ignores heights: the cone
-/// is a sector of the ground plane, and nothing hides a target. With `byRays` it casts rays into the cone, and hears
-/// each collider that one of them meets first, once.
+/// is a sector of the ground plane, and nothing hides a target. With `byRays` it hears each collider of which a part is
+/// in the cone and not hidden, once, however thin it is; one that it touches or is in at `minRange`.
 class SonarPerceptor : public RayPerceptor {
   SPARK_CLASS(SonarPerceptor, RayPerceptor)
  public:
@@ -25,15 +26,18 @@ class SonarPerceptor : public RayPerceptor {
     using S = SonarPerceptor;
     d.doc("Senses distances to what is in a cone in front of it: (US name (d1 d2 ...)) in m.");
     d.property("byRays", &S::byRays_)
-        .doc("Hears every collider that rays meet; false: as in the installed base, other robots and posts, unhidden.");
+        .doc("Hears every collider in the cone; false: as in the installed base, other robots and posts, unhidden.");
     d.property("rings", &S::rings_)
         .range(0, 50)
-        .doc("Rings of rays around the one in the middle of the cone; ring k has 6 k rays. For byRays.");
+        .doc(
+            "For byRays: rings of rays that look for what is hidden where it is nearest; ring k has 6 k rays, around "
+            "one in the middle of the cone.");
     d.property("maxEchoes", &S::maxEchoes_).range(0, 100).doc("Number of reported distances.");
     d.property("senseCone", &S::senseConeDeg_).unit("deg").range(0, 360).doc("Full opening angle of the cone.");
     d.property("noise", &S::noise_).doc("Adds Gaussian noise to the distances.");
     d.property("random", &S::random_).state().doc("State of the noise's random numbers.");
     d.alias("addNoise", "setNoise");
+    d.link(&S::hearing_, At<IHearing>(IPhysicsServer::kPath));
   }
   void sense(Predicates& out, const Event&) override {
     if (!transform()) return;
@@ -51,29 +55,13 @@ class SonarPerceptor : public RayPerceptor {
 
   bool casts() const override { return byRays_; }
 
-  /// Adds the nearest distance of each collider that a ray meets.
+  /// Adds the distances to what is heard in the cone.
   void castCone() {
-    beginMeasuring();
     heard_.clear();
-    const double widest = degToRad(senseConeDeg_ / 2);
-    for (int ring = 0; ring <= rings_; ++ring) {
-      const double aside = ring > 0 ? widest * ring / rings_ : 0;
-      const int rays = std::max(1, 6 * ring);
-      for (int i = 0; i < rays; ++i) {
-        const double around = 2 * kPi * i / rays;
-        const auto hit =
-            cast({std::sin(aside) * std::cos(around), std::cos(aside), std::sin(aside) * std::sin(around)});
-        if (!hit) continue;
-        const auto known = std::find(heard_.begin(), heard_.end(), hit->collider);
-        if (known == heard_.end()) {
-          heard_.push_back(hit->collider);
-          echoes_.push_back(hit->distance);
-        } else {
-          double& echo = echoes_[static_cast<std::size_t>(known - heard_.begin())];
-          echo = std::min(echo, hit->distance);
-        }
-      }
-    }
+    if (beginMeasuring() && hearing_)
+      hearing_->listen({pose().position, pose().rotation.col(1), degToRad(senseConeDeg_ / 2), maxRange_}, rings_,
+                       agent(), heard_);
+    for (const Echo& echo : heard_) echoes_.push_back(echo.distance);
   }
 
   /// Adds the distances to echo targets.
@@ -128,7 +116,8 @@ class SonarPerceptor : public RayPerceptor {
   TreeWatch tree_;
   std::vector<const Transform*> targets_;
   std::vector<double> echoes_;
-  std::vector<const ICollider*> heard_;  ///< of these echoes, by rays
+  std::vector<Echo> heard_;  ///< of these echoes, by rays
+  Link<IHearing> hearing_;
 };
 
 }  // namespace spark

@@ -20,6 +20,18 @@ class BenchSensor : public Perceptor {
   void sense(Predicates&, const Event&) override {}
 };
 
+/// The same, with numbers of which a test says what they are.
+class BenchMeter : public BenchSensor, public IMeasurement {
+  SPARK_CLASS(BenchMeter, BenchSensor)
+ public:
+  static void describe(Description<BenchMeter>& d) {
+    d.doc("A sensor that says what it measures.");
+    d.implements<IMeasurement>();
+  }
+  Measured measured() const override { return what; }
+  Measured what;
+};
+
 /// The message text of predicates.
 inline std::string textOf(const Predicates& lists, int decimals = 2) {
   std::string out;
@@ -32,7 +44,15 @@ struct Bench : TestHost {
   Bench() {
     for (const char* plugin : {"scene", "gamecontrol", "modifiers"}) kernel.plugins().use(plugin);
     kernel.registerClass<BenchSensor>();
+    kernel.registerClass<BenchMeter>();
     sensor = &kernel.create<BenchSensor>("BenchSensor", "/usr/sensor");
+  }
+  /// Puts a sensor in its place that says what it measures.
+  void measure(const Measured& what) {
+    kernel.root().require<Node>("/usr").remove(*sensor);
+    auto& meter = kernel.create<BenchMeter>("BenchMeter", "/usr/sensor");
+    meter.what = what;
+    sensor = &meter;
   }
   /// Adds a modifier to the end of the chain.
   Leaf& add(const char* className, const std::vector<std::pair<const char*, Value>>& properties = {}) {

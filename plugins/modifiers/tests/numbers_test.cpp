@@ -278,3 +278,82 @@ TEST_CASE("A modifier that is no child of a perceptor or an effector says so") {
   CHECK_THAT(bench.text, Catch::Contains("/usr/stray has no effect: expected a perceptor or an effector as its parent, "
                                          "found /usr (Node)."));
 }
+
+TEST_CASE("Numbers stay within the limits of their sensor, and the one that says nothing stays as it is") {
+  Bench bench;
+  bench.measure({Measured::Kind::numbers, 0.1, 10, 10});
+  SECTION("noise") {
+    bench.add("WhiteNoise", {{"sigma", 5}});
+    double low = 10, high = 0;
+    for (const double v : repeated(bench, 5, 500)) low = std::min(low, v), high = std::max(high, v);
+    CHECK(low == 0.1);
+    CHECK(high == 10);
+    for (const double v : repeated(bench, 10, 50)) CHECK(v == 10);
+  }
+  SECTION("what follows leaves it, too") {
+    bench.add("Bias", {{"mean", -3}});
+    bench.add("Gain", {{"gain", 0.5}});
+    CHECK(bench.senseAll({10, 2, 8}) == std::vector<double>{10, 0.1, 2.5});
+  }
+}
+
+TEST_CASE("What adds to a rotation turns it; what does not leaves it, and says so") {
+  Bench bench;
+  bench.measure({Measured::Kind::rotation});
+  const auto turned = [&] { return bench.senseAll({1, 0, 0, 0}); };
+  SECTION("a bias about one axis") {
+    bench.add("Bias", {{"mean", 0.2}, {"indices", List{2}}});
+    const std::vector<double> q = turned();
+    CHECK(q[0] == Approx(std::cos(0.1)));
+    CHECK(q[3] == Approx(std::sin(0.1)));
+  }
+  SECTION("noise keeps its length") {
+    bench.add("WhiteNoise", {{"sigma", 0.5}});
+    bench.add("RandomWalk", {{"sigma", 0.5}});
+    double sum = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const std::vector<double> q = turned();
+      CHECK(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3] == Approx(1));
+      sum += std::pow(2 * std::asin(q[1]), 2);
+    }
+    CHECK(sum > 0);
+  }
+  SECTION("a gain") {
+    bench.add("Gain", {{"gain", 2}});
+    CHECK(turned() == std::vector<double>{1, 0, 0, 0});
+    CHECK_THAT(bench.text, Catch::Contains("leaves the rotation that /usr/sensor senses as it is"));
+  }
+}
+
+TEST_CASE("A pose keeps its rotation one; its position has the error of its numbers") {
+  Bench bench;
+  bench.measure({Measured::Kind::pose});
+  bench.add("Bias", {{"mean", 0.1}});
+  const std::vector<double> m = bench.senseAll({1, 0, 0, 5, 0, 1, 0, 6, 0, 0, 1, 7, 0, 0, 0, 1});
+  CHECK(m[3] == Approx(5.1));
+  CHECK(m[7] == Approx(6.1));
+  CHECK(m[11] == Approx(7.1));
+  CHECK(m[12] == 0);
+  CHECK(m[15] == 1);
+  CHECK(m[0] * m[0] + m[4] * m[4] + m[8] * m[8] == Approx(1));
+  CHECK(m[0] + m[5] + m[10] == Approx(1 + 2 * std::cos(0.1 * std::sqrt(3))));
+}
+
+TEST_CASE("Noise in proportion is a fraction of the number") {
+  Bench bench;
+  bench.add("WhiteNoise", {{"relative", 0.01}});
+  double square = 0;
+  for (const double v : repeated(bench, 50)) square += (v - 50) * (v - 50);
+  CHECK(std::sqrt(square / kMany) == Approx(0.5).epsilon(0.03));
+}
+
+TEST_CASE("A modifier that finds no number says so once") {
+  Bench bench;
+  bench.add("Bias", {{"field", "speed"}, {"mean", 1}});
+  for (int i = 0; i < 120; ++i) bench.sense(1);
+  const std::string mark = "has changed nothing so far";
+  const auto first = bench.text.find(mark);
+  REQUIRE(first != std::string::npos);
+  CHECK(bench.text.find(mark, first + 1) == std::string::npos);
+  CHECK_THAT(bench.text, Catch::Contains("in a list 'speed'"));
+}

@@ -235,3 +235,63 @@ TEST_CASE("RayScene follows bodies, changed shapes and removed geoms", "[senses]
   ++s.model.structure;
   CHECK(distance(2) == -1);
 }
+
+TEST_CASE("A cone hears each geom at its nearest point: no ray in the cone meets it nearer", "[senses]") {
+  RandomScene s(7, 60);
+  RayScene rays;
+  rays.update(s.model, s.state, 1);
+  int heardInAll = 0;
+  for (int k = 0; k < 12; ++k) {
+    const double angle = s.number(0.05, k % 4 == 3 ? 3.1 : 1.2);
+    const Cone cone{s.vector(4), s.vector(1).normalized(), std::cos(angle), std::sin(angle), s.number(2, 8)};
+    const Vec3 right = cone.axis.unitOrthogonal(), up = cone.axis.cross(right);
+    for (std::size_t i = 0; i < s.model.geoms.size(); ++i) {
+      const engine::Geom& geom = s.model.geoms[i];
+      const Accepts alone = [&](const engine::Geom& g) { return &g == &geom; };
+      std::vector<RayScene::GeomEcho> heard;
+      rays.listen(cone, 0, alone, heard);
+      REQUIRE(heard.size() <= 1);
+      heardInAll += static_cast<int>(heard.size());
+      const Pose pose = poseOf(s.model, s.state, static_cast<engine::Index>(i));
+      const double gap = distanceTo(geom.shape, pose.rotation.transpose() * (cone.apex - pose.position));
+      INFO("cone " << k << ", geom " << i << ", shape " << int(geom.shape.shape) << ", away " << gap);
+      if (!heard.empty()) CHECK(heard[0].distance >= gap - 1e-9);
+      double nearest = HUGE_VAL;
+      for (int ray = 0; ray < 300; ++ray) {
+        const double aside = angle * std::sqrt((ray + 0.5) / 300), around = 2.399963 * ray;
+        const Vec3 direction =
+            std::cos(aside) * cone.axis + std::sin(aside) * (std::cos(around) * right + std::sin(around) * up);
+        if (const auto hit = rays.castRay(cone.apex, direction, cone.range, alone))
+          nearest = std::min(nearest, hit->distance);
+      }
+      if (nearest == HUGE_VAL) continue;
+      REQUIRE(heard.size() == 1);
+      CHECK(heard[0].distance <= nearest + 1e-3);  // round sides are prisms
+    }
+  }
+  CHECK(heardInAll > 40);
+}
+
+TEST_CASE("A cone hears what contains its apex, and what is seen only beside what hides its nearest point",
+          "[senses]") {
+  RandomScene s(1, 0);
+  s.add({.shape = Shape::box, .lengths = {1, 1, 1}});
+  s.model.geoms[0].offset = {};
+  s.add({.shape = Shape::box, .lengths = {3, 0.1, 0.3}});
+  s.model.geoms[1].offset = {{0, 10, 0}, Mat3::Identity()};
+  s.add({.shape = Shape::cylinder, .radius = 0.01, .length = 2});  // a thin post behind a low board
+  s.model.geoms[2].offset = {{0.123, 11, 0}, Mat3::Identity()};
+  RayScene rays;
+  rays.update(s.model, s.state, 1);
+  std::vector<RayScene::GeomEcho> heard;
+  rays.listen({Vec3::Zero(), Vec3::UnitY(), std::cos(0.5), std::sin(0.5), 5}, 3, {}, heard);
+  REQUIRE(heard.size() == 1);
+  CHECK(heard[0].distance == 0);
+  heard.clear();
+  rays.listen({{0, 8, 0}, Vec3::UnitY(), std::cos(0.3), std::sin(0.3), 5}, 0, {}, heard);
+  REQUIRE(heard.size() == 2);
+  CHECK(heard[0].distance == Approx(1.95));
+  CHECK(heard[1].geom == 2);
+  CHECK(heard[1].distance > 3);
+  CHECK(heard[1].distance < 3.1);
+}

@@ -98,6 +98,17 @@ struct Actuator {
   std::array<double, 2> forceRange{-HUGE_VAL, HUGE_VAL};  ///< of the actuator's own force, before the gear
 };
 
+/// How a sensor, or some of its numbers, differ from the truth: in the units of its percept, applied in this order.
+struct Imperfection {
+  const char* field = "";                     ///< name of the list with the numbers; "": the whole percept
+  std::vector<int> indices{};                 ///< which of them; empty: all
+  double bias = 0, biasSigma = 0;             ///< a constant offset: mean, and standard deviation of what is drawn once
+  double sigma = 0;                           ///< standard deviation of noise
+  double relative = 0;                        ///< the same, as a fraction of the number
+  double least = -HUGE_VAL, most = HUGE_VAL;  ///< range
+  double step = 0;                            ///< resolution; 0: any number
+};
+
 struct Sensor {
   Element from;
   std::string kind, name;
@@ -107,6 +118,11 @@ struct Sensor {
   // the body `object` feed, whatever `kind` is; and what its properties are set to.
   const char* perceptor = nullptr;
   std::vector<std::pair<const char*, Value>> settings{};
+  std::vector<Imperfection> imperfections{};
+  double rate = 0;  ///< percepts per second of simulated time [Hz]; 0: one in each cycle
+  // Of MJCF, in MuJoCo's units.
+  double noise = 0;   ///< standard deviation, if the model's flag says so
+  double cutoff = 0;  ///< largest magnitude; 0: any
 };
 
 /// Bodies that are held together, or joints whose coordinates depend on each other (MuJoCo's documentation,
@@ -169,6 +185,7 @@ struct Option {
 struct Flags {
   bool contact = true, limit = true, frictionLoss = true, passive = true, actuation = true, clampControl = true,
        equality = true;
+  bool sensorNoise = false;  ///< sensors have the noise of their attributes
 };
 
 /// A whole model. bodies[0] is the world; parents come before their children.

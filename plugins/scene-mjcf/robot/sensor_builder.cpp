@@ -2,11 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "spark/access.h"
 
 namespace spark::mjcf {
+
+namespace {
+constexpr double kDegrees = 180 / kPi;
+constexpr double kFarthest = 1000;  // m: of a rangefinder without a cutoff
+}  // namespace
 
 void SensorBuilder::build() {
   for (const Sensor& s : c_.model.sensors) {
@@ -20,6 +27,8 @@ void SensorBuilder::build() {
       onBody(s, "GyroRatePerceptor");
     else if (s.kind == "accelerometer")
       onBody(s, "Accelerometer");
+    else if (s.kind == "rangefinder")
+      onRay(s);
     else if (s.kind == "framepos")
       onFrame(s, "PositionPerceptor");
     else if (s.kind == "framequat")
@@ -46,31 +55,53 @@ void SensorBuilder::onJoint(const Sensor& s) {
   Node& parent = *joint->second.made->leaf().asNode();
   const bool known = std::any_of(parent.children().begin(), parent.children().end(),
                                  [](const auto& c) { return c->classObject()->name() == "JointPerceptor"; });
-  if (known && s.kind == "jointvel") return;
-  makePerceptor(s, parent, "JointPerceptor");
+  const bool rate = s.kind == "jointvel";
+  const double unit = joint->second.joint->kind == JointKind::slide ? 1 : kDegrees;
+  if (known && rate) {
+    for (const auto& child : parent.children())
+      if (child->classObject()->name() == "JointPerceptor") return addMujocoNoise(s, "vx", unit, *child);
+  }
+  if (Leaf* const made = makePerceptor(s, parent, "JointPerceptor")) addMujocoNoise(s, rate ? "vx" : "ax", unit, *made);
 }
 
-/// The perceptor senses in the frame of the body, not of the site.
+/// The perceptor senses at the place and in the frame of the site.
 void SensorBuilder::onBody(const Sensor& s, const char* className) {
   const auto site = c_.sites.find(s.object);
   if (site == c_.sites.end()) throw s.from.error(fmt::format("there is no site '{}'", s.object));
   Node& parent = *site->second->parent();
   if (&parent == &c_.top) return refuse(s, "of what does not move is not supported");
-  const Pose pose = toPose(static_cast<Transform*>(site->second->requireAs(Transform::kInterface))->local());
-  if (c_.has(className) && !pose.rotation.isIdentity(1e-6)) refuse(s, "ignores the rotation of its site");
-  makePerceptor(s, parent, className);
+  const bool gyro = std::string_view(className) == "GyroRatePerceptor";
+  if (Leaf* const made = makePerceptor(s, *site->second, className))
+    addMujocoNoise(s, gyro ? "rt" : "a", gyro ? kDegrees : 1, *made);
+}
+
+/// A ray along the z axis of the site; the perceptor looks along y.
+void SensorBuilder::onRay(const Sensor& s) {
+  const auto site = c_.sites.find(s.object);
+  if (site == c_.sites.end()) throw s.from.error(fmt::format("there is no site '{}'", s.object));
+  if (!c_.has("DistancePerceptor")) return;
+  Node*& turned = frames_[fmt::format("ray {}", s.object)];
+  const Pose toZ{Vec3::Zero(), Eigen::AngleAxisd(kPi / 2, Vec3::UnitX()).toRotationMatrix()};
+  if (!turned) turned = &c_.transform(*site->second, c_.names.in(*site->second, s.object + "-ray", ""), toZ);
+  Leaf* const made = makePerceptor(s, *turned, "DistancePerceptor");
+  if (!made) return;
+  setProperty(*made, "maxRange", s.cutoff > 0 ? s.cutoff : kFarthest);
+  addMujocoNoise(s, "", 1, *made);
 }
 
 void SensorBuilder::onFrame(const Sensor& s, const char* className) {
+  const auto frameSensor = [&](Node& parent) {
+    if (Leaf* const made = makePerceptor(s, parent, className)) addMujocoNoise(s, "", 1, *made);
+  };
   if (s.objectType == "site") {
     const auto site = c_.sites.find(s.object);
     if (site == c_.sites.end()) throw s.from.error(fmt::format("there is no site '{}'", s.object));
-    return makePerceptor(s, *site->second, className);
+    return frameSensor(*site->second);
   }
   if (s.objectType == "geom") {
     const auto place = geomPlace(s.object);
     if (!place) return refuse(s, fmt::format("of the geom '{}', which has no place here, is not supported", s.object));
-    return makePerceptor(s, transformOf(s, *place, "geom"), className);
+    return frameSensor(transformOf(s, *place, "geom"));
   }
   if (s.objectType == "camera") return refuse(s, "of a camera is not supported");
   const bool inertial = s.objectType == "body";
@@ -79,7 +110,7 @@ void SensorBuilder::onFrame(const Sensor& s, const char* className) {
     refuse(s, "has the rotation of the body's link: that of its inertial frame is not supported");
   else if (inertial)
     place.pose.position = place.body->body->mass.center;
-  makePerceptor(s, transformOf(s, place, place.pose.position.isZero(0) ? "link" : "center"), className);
+  frameSensor(transformOf(s, place, place.pose.position.isZero(0) ? "link" : "center"));
 }
 
 /// Handlers feed the first such perceptor below their transform, which has all colliders of what moves as one body.
@@ -115,8 +146,8 @@ Node& SensorBuilder::transformOf(const Sensor& s, const Place& place, const char
   return *made;
 }
 
-void SensorBuilder::makePerceptor(const Sensor& s, Node& parent, const char* className) {
-  if (!c_.has(className)) return;
+Leaf* SensorBuilder::makePerceptor(const Sensor& s, Node& parent, const char* className) {
+  if (!c_.has(className)) return nullptr;
   const std::string& name = s.name.empty() ? s.object : s.name;
   Leaf& perceptor = parent.create(className, c_.names.unprefixed(parent, name, "sensor"));
   const std::string message = c_.names.perceptor(name);
@@ -126,6 +157,61 @@ void SensorBuilder::makePerceptor(const Sensor& s, Node& parent, const char* cla
   for (const auto& [property, value] : s.settings) setProperty(perceptor, property, value);
   if (const auto joint = c_.joints.find(s.object); std::string_view(className) == "JointPerceptor")
     setProperty(perceptor, "reference", joint->second.joint->reference);
+  addImperfections(s, perceptor);
+  setRate(s, perceptor);
+  return &perceptor;
+}
+
+void SensorBuilder::addImperfections(const Sensor& s, Leaf& perceptor) {
+  for (const Imperfection& x : s.imperfections) addModifiers(s, x, perceptor);
+}
+
+/// What the attributes `noise` and `cutoff` say; `unit`: that of the percept in MuJoCo's.
+void SensorBuilder::addMujocoNoise(const Sensor& s, const char* field, double unit, Leaf& perceptor) {
+  Imperfection x;
+  x.field = field;
+  if (s.noise > 0 && c_.model.flags.sensorNoise) x.sigma = unit * s.noise;
+  if (s.noise > 0 && !c_.model.flags.sensorNoise)
+    refuse(s, "has noise, which acts only with <flag sensornoise=\"enable\"/>, as in MuJoCo");
+  if (s.cutoff > 0 && s.kind == "framequat")
+    refuse(s, "has a cutoff, which means nothing for a rotation");
+  else if (s.cutoff > 0 && s.kind != "rangefinder")
+    x.least = -unit * s.cutoff, x.most = unit * s.cutoff;
+  addModifiers(s, x, perceptor);
+}
+
+void SensorBuilder::addModifiers(const Sensor& s, const Imperfection& x, Leaf& perceptor) {
+  const auto add = [&](const char* className, const char* name,
+                       std::initializer_list<std::pair<const char*, double>> set) {
+    if (std::all_of(set.begin(), set.end(), [](const auto& p) { return p.second == 0 || std::isinf(p.second); }))
+      return;
+    if (!provides(c_.top.kernel(), className))
+      return refuse(s, fmt::format("is exact: {} is a class of the plugin modifiers, which is not there", className));
+    Node& parent = *perceptor.asNode();
+    Leaf& made = parent.create(className, c_.names.unprefixed(parent, name, ""));
+    if (*x.field) setProperty(made, "field", x.field);
+    if (!x.indices.empty()) setProperty(made, "indices", List(x.indices.begin(), x.indices.end()));
+    for (const auto& [property, value] : set) setProperty(made, property, value);
+  };
+  add("Bias", "bias", {{"mean", x.bias}, {"sigma", x.biasSigma}});
+  add("WhiteNoise", "noise", {{"sigma", x.sigma}, {"relative", x.relative}});
+  add("Saturation", "range", {{"least", x.least}, {"most", x.most}});
+  add("Quantization", "resolution", {{"step", x.step}});
+}
+
+/// A perceptor senses in every n-th cycle.
+void SensorBuilder::setRate(const Sensor& s, Leaf& perceptor) {
+  if (!(s.rate > 0)) return;
+  const Leaf* const simulation = c_.top.kernel().root().find("/sys/server/simulation");
+  const double cycle =
+      simulation && simulation->classObject()->property("step") ? getProperty(*simulation, "step").toNumber() : 0;
+  if (!(cycle > 0))
+    return refuse(
+        s, fmt::format("senses in each cycle, not at {:g} Hz: there is no simulation whose cycle is known", s.rate));
+  const double interval = std::clamp(std::round(1 / (s.rate * cycle)), 1.0, 1e9);
+  setProperty(perceptor, "interval", static_cast<std::int64_t>(interval));
+  if (const double rate = 1 / (interval * cycle); std::abs(rate - s.rate) > 1e-3 * s.rate)
+    refuse(s, fmt::format("senses at {:.4g} Hz, which cycles of {:g} s allow, not at {:g} Hz", rate, cycle, s.rate));
 }
 
 }  // namespace spark::mjcf

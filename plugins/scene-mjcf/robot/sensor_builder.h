@@ -6,7 +6,8 @@
 
 namespace spark::mjcf {
 
-/// Makes perceptors, where there are such classes. Bodies, joints and sites must be there.
+/// Makes perceptors, with modifiers for their noise, ranges and resolutions, where there are such classes. Bodies,
+/// joints and sites must be there.
 class SensorBuilder {
  public:
   explicit SensorBuilder(Construction& construction) : c_(construction) {}
@@ -21,12 +22,17 @@ class SensorBuilder {
   };
   void onJoint(const Sensor& s);
   void onBody(const Sensor& s, const char* className);
+  void onRay(const Sensor& s);
   void onFrame(const Sensor& s, const char* className);
   void onColliders(const Sensor& s);
   Place bodyPlace(const Sensor& s);
   std::optional<Place> geomPlace(const std::string& name);
   Node& transformOf(const Sensor& s, const Place& place, const char* what);
-  void makePerceptor(const Sensor& s, Node& parent, const char* className);
+  Leaf* makePerceptor(const Sensor& s, Node& parent, const char* className);
+  void addImperfections(const Sensor& s, Leaf& perceptor);
+  void addMujocoNoise(const Sensor& s, const char* field, double unit, Leaf& perceptor);
+  void addModifiers(const Sensor& s, const Imperfection& x, Leaf& perceptor);
+  void setRate(const Sensor& s, Leaf& perceptor);
   void refuse(const Sensor& s, const std::string& why);
 
   Construction& c_;

@@ -69,7 +69,6 @@ TEST_CASE("sensors and actuators that are not supported are logged with their po
                                  "velocimeter site='s'",
                                  "force site='s'",
                                  "magnetometer site='s'",
-                                 "rangefinder site='s'",
                                  "ballquat joint='ball'",
                                  "actuatorpos actuator='a'",
                                  "subtreecom body='b'",

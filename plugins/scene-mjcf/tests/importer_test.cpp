@@ -191,7 +191,7 @@ TEST_CASE("sensors and actuators become perceptors and effectors") {
   CHECK(h.kernel.root().find("/usr/scene/m/b/j/j1")->classObject()->name() == "ControlEffector");
   CHECK(h.kernel.root().find("/usr/scene/m/c/k/turn")->classObject()->name() == "ActuatorEffector");
   CHECK(getProperty(*h.kernel.root().find("/usr/scene/m/b/j/j1"), "maxForce").toNumber() == 3);
-  for (const char* path : {"m/b/j/q_j1", "m/c/g", "m/c/s/p", "m/b/b-link/o"})
+  for (const char* path : {"m/b/j/q_j1", "m/c/s/g", "m/c/s/p", "m/b/b-link/o"})
     CHECK(h.kernel.root().find("/usr/scene/" + std::string(path)));
   CHECK_FALSE(h.kernel.root().find("/usr/scene/m/b/j/dq_j1"));
   std::vector<Perceptor*> perceptors;

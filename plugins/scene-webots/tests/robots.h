@@ -57,7 +57,7 @@ DEF CAR Robot {
       device [ RotationalMotor { name "right motor" maxVelocity 6.28 maxTorque 0.5 } PositionSensor { name "right sensor" } ]
       endPoint Wheel { name "right wheel" translation 0.05 -0.09 0 color 1 1 1 }
     }
-    DistanceSensor { translation 0.1 0 0.01 name "ds0" lookupTable [ 0 0 0, 0.5 1000 0.1 ] type "laser" }
+    DistanceSensor { translation 0.1 0 0.01 name "ds0" lookupTable [ 0 0 0.1, 0.5 0.5 0.1 ] type "laser" }
     DEF GPS_NODE GPS { name "gps" }
   ]
   boundingObject Group {

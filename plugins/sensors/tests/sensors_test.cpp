@@ -170,6 +170,27 @@ TEST_CASE("the accelerometer samples before the step and measures 0 in free fall
   CHECK(robot.sense(sensor) == "(ACC (n torso) (a 0.00 0.00 29.43))");
 }
 
+TEST_CASE("an accelerometer beside the centre of mass senses how its place is accelerated, in its own frame") {
+  Robot robot;
+  auto& rim = robot.transform->create<Transform>("Transform", "rim");
+  auto& place = rim.create<Transform>("Transform", "place");
+  rim.setLocalPos({0.5f, 0, 0});
+  place.setLocalRotationDeg(0, 0, 90);  // its x axis is the body's y axis
+  Leaf& sensor = place.create("Accelerometer", "rim");
+  CHECK_THROWS_WITH(setProperty(sensor, "gravity", List{1.0}), Catch::Contains("expected 3 numbers"));
+  setProperty(sensor, "gravity", List{0.0, 0.0, -2.0});
+  robot.body->now.angularVelocity = {0, 0, 2};
+  robot.prepare();
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n rim) (a 0.00 2.00 2.00))");  // 2^2 * 0.5 to the centre
+  robot.body->now.angularVelocity = {0, 0, 2.2};
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n rim) (a 5.00 2.42 2.00))");  // 0.2 / 0.02 * 0.5 along its way
+  setProperty(sensor, "gravity", List{});
+  robot.prepare();
+  CHECK(robot.sense(sensor) == "(ACC (n rim) (a 0.00 2.42 9.81))");
+}
+
 TEST_CASE("a foot sensor reports the force-weighted mean point and the total force in its frame, only on contact") {
   Robot robot;
   Leaf& sensor = robot.transform->create("ForceResistancePerceptor", "rf");

@@ -1,0 +1,17 @@
+-- A world with an agent whose percepts a case looks at.
+include "house.lua"
+
+--- Calls look(percepts, time) with what the agent below `place` has sensed; percepts are by class and name: "ACC hip".
+function watch(aspect, look)
+  aspect:new("ScriptBehavior", "watcher"):on("think", function(_, event)
+    local seen = {}
+    for _, p in ipairs(event.data) do
+      local name = type(p[2]) == "table" and p[2][2] or p[2] or ""
+      seen[p[1] .. " " .. name] = p
+    end
+    look(seen, event.time)
+  end)
+end
+
+--- True in the cycle of that time.
+function isAt(time, wanted) return math.abs(time - wanted) < 0.001 end
