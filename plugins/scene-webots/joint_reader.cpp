@@ -162,11 +162,6 @@ void JointReader::nameAndDrive(mjcf::Joint& j, const Devices& d, const std::stri
                             : otherwise);
   if (d.motor) drive(j, *d.motor);
   if (!d.sensor) return;
-  Fields f(*d.sensor, r_.unsupported);
-  f.ignore({"name"});
-  if (f.number("noise", 0) != 0) r_.ignore(*d.sensor, "the noise of a PositionSensor is not supported");
-  if (f.number("resolution", -1) != -1) r_.ignore(*d.sensor, "the resolution of a PositionSensor is not supported");
-  f.finish();
   model_.sensors.push_back(
       {d.sensor->element(), "jointpos", orElse(d.sensor->name(), "position sensor"), j.name, "joint", ""});
   readPositionSensor(*d.sensor, j.kind == mjcf::JointKind::slide, model_.sensors.back(), r_);
