@@ -47,11 +47,11 @@ std::string MeshFinder::similar(const std::string& name) {
   std::size_t most = 0;
   const auto found = byBaseName_.find(lower(wanted.back()));
   if (found == byBaseName_.end()) return "";
-  for (const std::string& candidate : found->second) {
-    const std::size_t common = commonEnd(wanted, partsOf(candidate));
-    if (common <= most || !files_.exists(candidate)) continue;
+  for (const Listed& candidate : found->second) {
+    const std::size_t common = commonEnd(wanted, partsOf(candidate.name));
+    if (common <= most || (common < 2 && !candidate.near) || !files_.exists(candidate.name)) continue;
     most = common;
-    best = candidate;
+    best = candidate.name;
   }
   return best;
 }
@@ -62,7 +62,7 @@ void MeshFinder::list() {
   const auto own = files_.hostFile(of_);
   if (!own) return;
   fs::path folder = own->parent_path(), resource = fs::path(of_).parent_path(), without;
-  while (true) {
+  for (level_ = 0;; ++level_) {
     list(folder, without, resource.generic_string());
     if (resource.empty() || resource.filename() != folder.filename()) return;
     without = folder;
@@ -82,7 +82,7 @@ void MeshFinder::list(const fs::path& folder, const fs::path& without, const std
   for (const fs::directory_entry& entry : entries) {
     const std::string name = entry.path().filename().string();
     if (name.starts_with(".") || entry.path() == without || ++listed_ > kMaxListed) continue;
-    if (entry.is_regular_file(failed)) byBaseName_[lower(name)].push_back(before + name);
+    if (entry.is_regular_file(failed)) byBaseName_[lower(name)].push_back({before + name, level_ < 2});
     if (entry.is_directory(failed) && !entry.is_symlink(failed)) list(entry.path(), without, before + name);
   }
 }

@@ -11,7 +11,8 @@ namespace spark::urdf {
 
 /// Reads the mesh files that one robot names. They are looked for in the folders around the robot's own file. As makers
 /// keep packages where they like, a file that is not where its name says is looked for by its base name, small and
-/// large letters alike: the one with the most folders in common counts, then the nearest.
+/// large letters alike: the one with the most folders in common counts, then the nearest. One with none in common
+/// counts in the robot's folder and the one around it alone: farther away it may be a part of another robot.
 class MeshFinder {
  public:
   /// `of`: the resource name of the robot's file. `files` must outlive this.
@@ -29,7 +30,12 @@ class MeshFinder {
   const std::string of_;
   bool isListed_ = false;
   std::size_t listed_ = 0;
-  std::map<std::string, std::vector<std::string>> byBaseName_;  ///< resource names, the nearest first
+  struct Listed {
+    std::string name;  ///< of the resource
+    bool near;         ///< in the robot's folder or the one around it
+  };
+  int level_ = 0;                                          ///< folders above the robot's that list() is in
+  std::map<std::string, std::vector<Listed>> byBaseName_;  ///< the nearest first
 };
 
 }  // namespace spark::urdf

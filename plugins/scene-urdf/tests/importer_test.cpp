@@ -103,6 +103,12 @@ TEST_CASE("A mesh that is not where its name says is looked for by its base name
     CHECK_THAT(h.text,
                Contains("r.urdf:2:1: the mesh '" + name + "' is not there: '" + found + "' is read in its place"));
   }
+  // One that only has the same name is not taken from far away: it may be a part of another robot.
+  std::filesystem::create_directories(h.folder.path() / "a/b/c");
+  h.folder.write("a/b/c/r.urdf", robot("package://other/Leg.obj"));
+  h.text.clear();
+  h.call(h.scene, "importScene", List{"a/b/c/r.urdf"});
+  CHECK_THAT(h.text, Contains("a <collision> is left out"));
   h.text.clear();
   h.import(robot("package://other/arm.obj"));
   CHECK_THAT(h.text, Contains("there is no such file in the folders around 'r.urdf'") && Contains("--scene-path"));
