@@ -169,11 +169,12 @@ void heightField(Search& search, const Cone& cone, const engine::HeightField& f)
 
 /// Searches in spheres that grow: most triangles of a large mesh are far away.
 void mesh(Search& search, const Cone& cone, const engine::Mesh& m, const NearTriangles& near) {
+  const auto visit = [&](std::uint32_t i) {
+    search.triangle(cornerOf(m, 3 * i) - cone.apex, cornerOf(m, 3 * i + 1) - cone.apex,
+                    cornerOf(m, 3 * i + 2) - cone.apex);
+  };
   for (double radius = cone.range / 64; search.nearest() > radius / 2; radius *= 2) {
-    near(cone.apex, std::min(radius, cone.range), [&](std::uint32_t i) {
-      search.triangle(cornerOf(m, 3 * i) - cone.apex, cornerOf(m, 3 * i + 1) - cone.apex,
-                      cornerOf(m, 3 * i + 2) - cone.apex);
-    });
+    near(cone.apex, std::min(radius, cone.range), std::cref(visit));  // a copy would allocate
     if (radius >= cone.range) return;
   }
 }

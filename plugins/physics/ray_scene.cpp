@@ -200,7 +200,8 @@ std::optional<double> RayScene::visibleFrom(const Cone& cone, const Placed& p, c
   const auto first = castRay(cone.apex, nearest / distance, distance + kAtSurface, accepts);
   if (!first || first->geom == p.index || first->distance >= distance - kAtSurface)
     return first && first->geom == p.index ? std::min(first->distance, distance) : distance;
-  std::vector<Vec3> points;
+  thread_local std::vector<Vec3> points;  // for its memory
+  points.clear();
   spreadPoints(p.geom->shape, points);
   std::optional<double> seen;
   for (const Vec3& point : points) {
