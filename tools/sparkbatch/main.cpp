@@ -10,6 +10,7 @@
 
 #include "batch.h"
 #include "crash_report.h"
+#include "output.h"
 #include "recorded_run.h"
 
 // Exit codes: 0: every run has a row; 1: some rows are errors, or stdout could not be written; 2: an error in the
@@ -68,7 +69,7 @@ int lead(const Options& options, Cluster& cluster) {
   }
   const int code = leader->run(stopMode);
   const std::string summary = leader->summary();
-  if (std::puts(summary.c_str()) >= 0 && std::fflush(stdout) == 0) return code;
+  if (sparkhost::printOut(summary + '\n')) return code;
   fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
              summary);
   return std::max(code, 1);
@@ -82,6 +83,7 @@ int main(int argc, char** argv) {
     cluster = Cluster::join();
     Options options;
     if (const auto code = readOptions(argc, argv, cluster->number() == 0, options)) return *code;
+    sparkhost::reserveStdout();
     chooseThreads(options, cluster->neighbours());
     std::optional<sparkhost::RecordedRun> origin;
     if (!options.from.empty()) options.origin = &origin.emplace(options.from);

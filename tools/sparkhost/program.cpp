@@ -15,6 +15,7 @@
 #include "hang_watch.h"
 #include "hash_log.h"
 #include "host.h"
+#include "output.h"
 #include "recorded_run.h"
 #include "spark/error.h"
 #include "status_line.h"
@@ -47,11 +48,9 @@ namespace {
 
 /// Prints a line to stdout. On error prints a message to stderr and returns false; the run continues.
 bool printLine(const std::string& line) {
-  errno = 0;
-  if (std::puts(line.c_str()) >= 0 && std::fflush(stdout) == 0) return true;
+  if (sparkhost::printOut(line + '\n')) return true;
   fmt::print(stderr, "sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
              line);
-  std::clearerr(stdout);
   return false;
 }
 
@@ -72,9 +71,10 @@ void orExit(int code, F step) {
 }
 
 void printDescriptions(spark::Kernel& kernel, const sparkhost::Options& options) {
-  if (options.listPlugins) fmt::print("{}", sparkhost::pluginList(kernel));
-  if (!options.describe.empty()) fmt::print("{}", sparkhost::classDescription(kernel, options.describe));
-  if (std::fflush(stdout) != 0) throw spark::Error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
+  std::string text;
+  if (options.listPlugins) text += sparkhost::pluginList(kernel);
+  if (!options.describe.empty()) text += sparkhost::classDescription(kernel, options.describe);
+  if (!sparkhost::printOut(text)) throw spark::Error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
 /// Throws if errors were logged: a run would continue after them, but --check fails.
@@ -100,6 +100,7 @@ int run(int argc, char** argv) {
   installCrashReport("sparkhost");
   Options options;
   if (const auto code = readOptions(argc, argv, options)) return *code;
+  reserveStdout();
   std::optional<RecordedRun> recorded;
   std::optional<Host> host;
   std::string firstLine;

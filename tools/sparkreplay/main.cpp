@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +12,7 @@
 #include "hang_watch.h"
 #include "host.h"
 #include "mcap.h"
+#include "output.h"
 #include "program.h"
 #include "recorded_run.h"
 #include "spark/error.h"
@@ -146,22 +149,30 @@ int play(const Arguments& arguments, const std::string& file) {
   return sparkhost::runProgram(static_cast<int>(words.size()), line.data());
 }
 
+void print(const Json& line) {
+  const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (!sparkhost::printOut(text + '\n'))
+    throw spark::Error(
+        fmt::format("cannot write to stdout ({}); this line is lost there: {}", std::strerror(errno), text));
+}
+
 int run(int argc, char** argv) {
   Arguments arguments;
   if (const auto code = read(argc, argv, arguments)) return *code;
+  sparkhost::reserveStdout();
   const std::string file = std::filesystem::absolute(arguments.file);
   if (arguments.play) return play(arguments, file);
   arguments.from = std::max(arguments.from, 0.0);
   if (!arguments.out.out.empty()) {
     sparkreplay::Export what = arguments.out;
     what.file = file, what.from = arguments.from, what.logLevel = arguments.logLevel;
-    fmt::print("{}\n", Json{{"file", what.out}, {"written", sparkreplay::write(what)}}.dump());
+    print(Json{{"file", what.out}, {"written", sparkreplay::write(what)}});
     return 0;
   }
   const spark::mcap::Reader recording(file);
   const auto [line, same] =
       arguments.verify ? verify(file, arguments.from, arguments.logLevel) : std::pair(describe(file, recording), true);
-  fmt::print("{}\n", line.dump(-1, ' ', false, Json::error_handler_t::replace));
+  print(line);
   return same ? 0 : 1;
 }
 

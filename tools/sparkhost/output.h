@@ -1,0 +1,15 @@
+#pragma once
+/// \file
+/// The program's stdout, for its own lines alone.
+
+#include <string>
+
+namespace sparkhost {
+
+/// From now on what libraries and plugins print to stdout goes to stderr. Call it once the command line is read, before
+/// plugins are loaded; further calls have no effect.
+void reserveStdout();
+/// Prints text to the stdout that the program was started with. False if it cannot be written: errno says why.
+bool printOut(const std::string& text);
+
+}  // namespace sparkhost
