@@ -9,6 +9,8 @@ namespace spark::ode {
 namespace {
 /// Corners within this fraction of the hull's size belong to the plane of a face.
 constexpr double kFlat = 1e-6;
+/// Sine of the angle up to which an edge of a face goes straight on.
+constexpr double kStraight = 1e-9;
 }  // namespace
 
 ConvexHull::ConvexHull(std::shared_ptr<const engine::Mesh> mesh) : mesh_(std::move(mesh)) {
@@ -40,6 +42,33 @@ ConvexHull::ConvexHull(std::shared_ptr<const engine::Mesh> mesh) : mesh_(std::mo
   }
 }
 
+bool ConvexHull::makeConvex(Face& face) const {
+  std::vector<std::uint32_t>& c = face.corners;
+  const auto at = [&](std::size_t i) { return c[i % c.size()]; };
+  // Corners of neighbouring faces, in this plane but for noise, may be inside of it or on its edges.
+  const auto turnsRight = [&](std::size_t i) {
+    const Vec3 before = corner(at(i + 1)) - corner(at(i)), after = corner(at(i + 2)) - corner(at(i + 1));
+    return before.cross(after).dot(face.normal) <= kStraight * before.norm() * after.norm();
+  };
+  for (std::size_t i = 0, convex = 0; c.size() >= 3 && convex < c.size();) {
+    if (!turnsRight(i)) {
+      ++convex, i = (i + 1) % c.size();
+      continue;
+    }
+    c.erase(c.begin() + static_cast<std::ptrdiff_t>((i + 1) % c.size()));
+    // The corner before the removed one turns elsewhere now.
+    convex = 0, i = c.empty() ? 0 : (i + c.size() - 1) % c.size();
+  }
+  // ODE takes the first three for those that say how the face is turned, seen from the centre.
+  const auto volume = [&](std::size_t i) { return corner(at(i)).dot(corner(at(i + 1)).cross(corner(at(i + 2)))); };
+  for (std::size_t i = 0; c.size() >= 3 && i < c.size(); ++i) {
+    if (!(volume(i) > 0)) continue;
+    std::rotate(c.begin(), c.begin() + static_cast<std::ptrdiff_t>(i), c.end());
+    return true;
+  }
+  return false;
+}
+
 void ConvexHull::addFace(const Vec3& normal, double offset, double tolerance) {
   Face face{normal, offset, {}};
   Vec3 middle = Vec3::Zero();
@@ -57,6 +86,7 @@ void ConvexHull::addFace(const Vec3& normal, double offset, double tolerance) {
   };
   std::sort(face.corners.begin(), face.corners.end(),
             [&](std::uint32_t a, std::uint32_t b) { return angle(a) < angle(b); });
+  if (!makeConvex(face)) return;
   planes_.insert(planes_.end(), {normal.x(), normal.y(), normal.z(), offset});
   polygons_.push_back(static_cast<unsigned>(face.corners.size()));
   polygons_.insert(polygons_.end(), face.corners.begin(), face.corners.end());

@@ -34,6 +34,9 @@ class ConvexHull {
   const std::vector<unsigned>& polygons() const { return polygons_; }
 
  private:
+  /// Removes corners that do not turn left, and begins with three that turn left seen from the centre too. False: there
+  /// are none, as of a face without area.
+  bool makeConvex(Face& face) const;
   void addFace(const Vec3& normal, double offset, double tolerance);
 
   std::shared_ptr<const engine::Mesh> mesh_;  // keeps its address
