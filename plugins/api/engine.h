@@ -175,10 +175,11 @@ struct Capabilities {
   bool meshes = true;        ///< static meshes with all their triangles; otherwise their convex hulls
   bool bodyMeshes = true;    ///< so do those of bodies
   bool heightFields = true;  ///< height fields collide
-  bool controls = false;     ///< it applies State::controls. Otherwise they come as forces on the bodies; in both cases
-                             ///< dry friction of controlled axes comes as a motor of speed 0
-  bool damping = false;      ///< it applies JointAxis::damping. Otherwise it comes as forces
-  bool springs = false;      ///< it applies the springs of JointAxis. Otherwise they come as forces
+  bool laws = false;         ///< it applies State::laws. Otherwise they come as forces on the bodies
+  bool controls = false;     ///< it applies State::controls. Otherwise they come as laws; in both cases dry friction of
+                             ///< controlled axes comes as a motor of speed 0
+  bool damping = false;      ///< it applies damping and armature of JointAxis. Otherwise they come as laws
+  bool springs = false;      ///< it applies the springs of JointAxis. Otherwise they come as laws
   bool bodyDamping = false;  ///< it applies the damping of bodies. Otherwise it comes as forces
   /// The length of step that suits it [s], of which a step of the simulation has a whole number; 0: any. That of the
   /// world (WorldParameters::timestep) comes first.
@@ -220,7 +221,7 @@ inline std::vector<std::string> namesOf(const Capabilities& can, bool has = true
 /// describeEngine() in its describe().
 class IEngine : public PerWorld<ISolver> {
  public:
-  SPARK_INTERFACE(IEngine, 7);
+  SPARK_INTERFACE(IEngine, 8);
   virtual Capabilities capabilities() const = 0;
   /// True for kinds of extensions that it reads (api/extension.h).
   virtual bool reads(std::uint64_t /*kind*/) const { return false; }

@@ -107,6 +107,22 @@ struct BlockInput {
   double value = 0;
 };
 
+/// What acts along one axis of a joint in one step, beside its motor and its stops: a force of
+///
+///     force - resistance (velocity after the step),   at most maxForce.
+///
+/// Controllers, springs, damping and the inertia of rotors come in this form. It is implicit in time: however stiff
+/// they are for the bodies and the step, they do not overshoot.
+struct AxisLaw {
+  Index joint = kNone;
+  int axis = 0;                ///< of the stops that count the coordinate; a ball joint: 0..2, x y z of the world
+  Vec3 along = Vec3::Zero();   ///< world, unit vector: the force acts on a, and its opposite on b
+  double force = 0;            ///< at rest [Nm or N]
+  double resistance = 0;       ///< above 0 [N m s or N s/m]
+  double maxForce = HUGE_VAL;  ///< [Nm or N]
+  bool operator==(const AxisLaw&) const = default;
+};
+
 /// What a step measures at a joint with `wantsFeedback`: force [N] and torque about the body's centre [Nm] on a and b;
 /// zero on the world.
 struct JointState {
@@ -140,6 +156,9 @@ struct State {
   std::vector<Motors> motors;  ///< by joint
   std::vector<AxisControl> controls;
   std::vector<BlockInput> inputs;  ///< of blocks of the world, in the order in which they were set first
+  /// For a step of an engine with Capabilities::laws: what acts on the joints of bodies that are awake. Those of one
+  /// axis act beside each other. The plugin `physics` writes them.
+  std::vector<AxisLaw> laws;
   /// By body: DynamicState::version when saved state was loaded. Empty: none was, or bodies were removed since.
   std::vector<std::uint32_t> loaded;
   /// The bodies whose pose changed since the last detect(), each once, in the order in which they did.

@@ -40,7 +40,7 @@ class ArticulatedSolver : public engine::ISolver {
 class ArticulatedEngine : public Node, public engine::IEngine {
   SPARK_CLASS(ArticulatedEngine, Node)
  public:
-  static constexpr engine::Capabilities kCapabilities{.armature = true, .damping = true};
+  static constexpr engine::Capabilities kCapabilities{.armature = true, .laws = true, .damping = true};
   static void describe(Description<ArticulatedEngine>& d) {
     d.doc(
         "Rigid bodies, solved along the trees that joints make of them. Islands that it does not want are stepped by "

@@ -100,9 +100,9 @@ IslandSolver::RowRange IslandSolver::addJoint(WorldView& world, Index index) {
   const Index a = nodeOf(world, joint.a), b = nodeOf(world, joint.b);
   Rows& rows = system_.rows;
   RowRange range{index, rows.size(), 0};
-  range.count =
-      writeJointRows(joint, world.softness[index], world.step.state.motors[index], world.step.state.coordinates[index],
-                     node(a).state, b == kNone ? nullptr : &node(b).state, constants_, rows.prepare(kMaxJointRows));
+  range.count = writeJointRows(joint, world.softness[index], world.step.state.motors[index],
+                               world.step.state.coordinates[index], world.laws, index, node(a).state,
+                               b == kNone ? nullptr : &node(b).state, constants_, rows.prepare(kMaxJointRows));
   rows.commit(range.count);
   const JointWarmStart& last = world.joints[index];
   for (Index i = range.first; i < range.end(); ++i) {

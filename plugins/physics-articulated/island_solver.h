@@ -16,6 +16,7 @@ struct WorldView {
   const Topology& topology;
   const std::vector<engine::JointSoftness>& softness;  ///< by joint
   std::vector<JointWarmStart>& joints;                 ///< by joint of the step
+  const engine::LawsByJoint& laws;
   ContactWarmStart& contacts;
   std::vector<Index>& firstNode;  ///< by tree: its first node in its island
 };

@@ -31,6 +31,8 @@ struct JointWriter {
   const engine::JointSoftness& soft;
   const engine::Motors& motors;
   const engine::JointCoordinates& coordinates;
+  const engine::LawsByJoint& laws;
+  Index index;  ///< of the joint
   RigidBodyState& a;
   RigidBodyState* b;
   const StepConstants& constants;
@@ -140,24 +142,66 @@ struct JointWriter {
     row.softness = 1 / inertia;
   }
 
-  /// The row of axis `index`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
+  void setInertia(Row& row, double inertia, double momentum) const {
+    if (inertia == 0) return;
+    row.inertia = inertia;
+    row.inertialTarget = momentum * constants.inverseDt / inertia;
+  }
+
+  // ---- laws (engine::AxisLaw) ----
+
+  /// A law in the direction of a row.
+  struct Law {
+    double force = 0, resistance = 0, maxForce = 0;
+  };
+  static Law lawAlong(const engine::AxisLaw& law, const SpatialVector& jacobianA) {
+    const Vec3 linear = jacobianA.linear();
+    const double cosine = (linear.isZero(0) ? jacobianA.angular() : linear).dot(law.along);
+    return {cosine < 0 ? -law.force : law.force, law.resistance, law.maxForce};
+  }
+  /// A row of a law with a bound, beside an inertial force.
+  void addLaw(std::uint8_t axis, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const Law& law,
+              double inertia, double momentum) {
+    Row& row = add(jacobianA, jacobianB, law.force / law.resistance, 0);
+    row.softness = constants.inverseDt / law.resistance;
+    row.low = -law.maxForce, row.high = law.maxForce;
+    row.axis = axis;
+    setInertia(row, inertia, momentum);
+  }
+
+  /// The row of axis `at`: its stop's if it has reached one, else its motor's if it has one, else none. `velocity`
   /// is the present velocity of a relative to b along the axis, for bounce. `drift`: what turns of the Jacobian add to
   /// the acceleration along the row [m/s^2]; 0 for rotation about an axis that is fixed in both bodies.
-  void addAxis(Index index, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
+  void addAxis(Index at, const SpatialVector& jacobianA, const SpatialVector& jacobianB, const StopContact& contact,
                double velocity, double drift = 0) {
-    const JointAxis& axis = joint.axes[index];
-    const engine::JointSoftness::Axis& softAxis = soft.axes[index];
-    const engine::Motor& motor = motors[index];
+    const JointAxis& axis = joint.axes[at];
+    const engine::JointSoftness::Axis& softAxis = soft.axes[at];
+    const engine::Motor& motor = motors[at];
     const Stop stop = contact.stop;
     const bool stopped = stop != Stop::none;
     const bool locked = stopped && axis.lowStop == axis.highStop;
     const bool powered = motor.maxForce > 0 && !locked;
-    const double inertia = axis.armature + axis.damping / constants.inverseDt;
+    double inertia = axis.armature + axis.damping / constants.inverseDt;
     // Of the row itself: that of a slider has arms, which `velocity` is without.
-    const double momentum =
+    double momentum =
         inertia > 0 ? axis.armature * (motionAlong(jacobianA, jacobianB) - drift / constants.inverseDt) : 0;
+    Law bounded;
+    laws.forEach(index, static_cast<int>(at), [&](const engine::AxisLaw& law) {
+      Law own = lawAlong(law, jacobianA);
+      if (law.maxForce < HUGE_VAL) {
+        if (!powered && !stopped) return void(bounded = own);
+        // The row has bounds already: the law begins the step within its own.
+        const double force = std::abs(own.force - own.resistance * motionAlong(jacobianA, jacobianB));
+        if (force > law.maxForce) own.force *= law.maxForce / force, own.resistance *= law.maxForce / force;
+      }
+      inertia += own.resistance / constants.inverseDt;
+      momentum += own.force / constants.inverseDt;
+    });
     if (!powered && !stopped) {
-      if (inertia > 0) addInertial(jacobianA, jacobianB, inertia, momentum);
+      if (bounded.resistance > 0)
+        addLaw(static_cast<std::uint8_t>(at), jacobianA, jacobianB, bounded, inertia, momentum);
+      else if (inertia > 0)
+        addInertial(jacobianA, jacobianB, inertia, momentum);
       return;
     }
     // At a stop the motor acts as a given force: the row belongs to the stop. Dry friction does not press.
@@ -165,12 +209,9 @@ struct JointWriter {
     if (powered && stopped && !friction)
       subtractForce(jacobianA, jacobianB, motorForceAtStop(softAxis.fudgeFactor, motor, stop));
     Row& row = add(jacobianA, jacobianB, motor.velocity, softAxis.cfm);
-    row.axis = static_cast<std::uint8_t>(index);
+    row.axis = static_cast<std::uint8_t>(at);
     row.stop = stop;
-    if (inertia > 0) {
-      row.inertia = inertia;
-      row.inertialTarget = momentum * constants.inverseDt / inertia;
-    }
+    setInertia(row, inertia, momentum);
     // A motor reaches its target velocity with a force of at most maxForce.
     if (!stopped) {
       row.low = -motor.maxForce, row.high = motor.maxForce;
@@ -356,9 +397,9 @@ struct JointWriter {
 }  // namespace
 
 Index writeJointRows(const engine::Joint& joint, const engine::JointSoftness& soft, const engine::Motors& motors,
-                     const engine::JointCoordinates& coordinates, RigidBodyState& a, RigidBodyState* b,
-                     const StepConstants& constants, Row* out) {
-  JointWriter writer{joint, soft, motors, coordinates, a, b, constants, out};
+                     const engine::JointCoordinates& coordinates, const engine::LawsByJoint& laws, Index index,
+                     RigidBodyState& a, RigidBodyState* b, const StepConstants& constants, Row* out) {
+  JointWriter writer{joint, soft, motors, coordinates, laws, index, a, b, constants, out};
   writer.write();
   return toIndex(static_cast<std::size_t>(writer.next - out));
 }

@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "api/engine.h"
+#include "api/laws_by_joint.h"
 #include "api/scene_joint.h"
 #include "index.h"
 #include "rotation.h"
@@ -128,13 +129,13 @@ struct StepConstants {
 /// Largest number of rows of a joint and of a contact.
 inline constexpr Index kMaxJointRows = 6, kMaxContactRows = 3;
 
-/// `coordinates`: where the axes are, for the turns of their angles. Writes the rows of a joint between bodies `a` and
-/// `b` (nullptr: the world) to `out`, which has room for kMaxJointRows. Returns their number. Sets Jacobians, target,
-/// softness, bounds, axis and stop. A motor at a stop has no row of its own: its force is added to `force` and `torque`
-/// of the bodies.
+/// `coordinates`: where the axes are, for the turns of their angles; `laws`: those of joint `index`. Writes the rows of
+/// a joint between bodies `a` and `b` (nullptr: the world) to `out`, which has room for kMaxJointRows. Returns their
+/// number. Sets Jacobians, target, softness, bounds, axis and stop. A motor at a stop has no row of its own: its force
+/// is added to `force` and `torque` of the bodies.
 Index writeJointRows(const engine::Joint& joint, const engine::JointSoftness& soft, const engine::Motors& motors,
-                     const engine::JointCoordinates& coordinates, RigidBodyState& a, RigidBodyState* b,
-                     const StepConstants& constants, Row* out);
+                     const engine::JointCoordinates& coordinates, const engine::LawsByJoint& laws, Index index,
+                     RigidBodyState& a, RigidBodyState* b, const StepConstants& constants, Row* out);
 
 /// The bodies of a contact that is a constraint.
 struct ContactBodies {

@@ -50,7 +50,8 @@ std::span<const std::uint8_t> Stepper::step(engine::Step& step, int mostRows, st
   deferred_.assign(n, 0);
   islands_ += static_cast<std::int64_t>(n);
   contacts_.match(step.contacts);
-  WorldView view{step, mostRows, topology_, softness_, joints_, contacts_, firstNode_};
+  laws_.list(step.state);
+  WorldView view{step, mostRows, topology_, softness_, joints_, laws_, contacts_, firstNode_};
   // Each thread takes the next island until none remains.
   std::atomic<std::size_t> next{0};
   const auto work = [&](std::size_t thread) {

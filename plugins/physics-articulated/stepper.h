@@ -52,6 +52,7 @@ class Stepper {
   std::vector<engine::JointSoftness> softness_;  ///< by joint
   std::vector<JointWarmStart> joints_;
   ContactWarmStart contacts_;
+  engine::LawsByJoint laws_;
   std::vector<Index> firstNode_;  ///< see WorldView
   IslandBuilder islandList_;
   std::vector<char> deferred_;                          ///< by island of the step

@@ -13,7 +13,7 @@ class BulletEngine : public Leaf, public engine::IEngine {
   SPARK_CLASS(BulletEngine, Leaf)
  public:
   static constexpr engine::Capabilities kCapabilities{
-      .armature = true, .detects = true, .bodyMeshes = false, .damping = true};
+      .armature = true, .detects = true, .bodyMeshes = false, .laws = true, .damping = true};
   static void describe(Description<BulletEngine>& d) {
     d.doc("Rigid bodies and contacts by Bullet, in coordinates of joints.");
     engine::describeEngine(d);

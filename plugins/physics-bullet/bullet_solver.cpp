@@ -40,6 +40,7 @@ Side BulletSolver::sideOf(Index body) {
 }
 
 void BulletSolver::step(engine::Step& step) {
+  laws_.list(step.state);
   islands_.find(step, trees_.size(), treeOf_, leftOver_);
   for (std::size_t i = 0; i < islands_.count(); ++i)
     if (islands_.isActive(i)) stepIsland(step, i);
@@ -67,7 +68,7 @@ void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
 
 void BulletSolver::write(RowSolver& rows) {
   const engine::Step& step = *step_;
-  const JointRows joints{step, softness_, rows};
+  const JointRows joints{step, softness_, laws_, rows};
   for (const Index i : islands_.trees(island_)) {
     TreeBody& tree = *trees_[i];
     for (const Dof& dof : tree.dofs()) joints.writeDof(tree, dof);

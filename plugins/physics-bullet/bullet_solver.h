@@ -2,6 +2,7 @@
 /// \file
 /// Steps a world by Bullet.
 
+#include "api/laws_by_joint.h"
 #include "api/scene_joint.h"
 #include "bullet_detector.h"
 #include "islands.h"
@@ -54,6 +55,7 @@ class BulletSolver : public engine::ISolver, private RowSource {
   std::vector<Index> leftOver_;                  ///< joints in no tree
   std::vector<std::uint8_t> measured_;           ///< by tree: a joint's force is wanted
   bool anyMeasured_ = false;                     ///< of the joints in trees and of the others
+  engine::LawsByJoint laws_;
   JointForces forces_;
   Islands islands_;
   // While a step runs.

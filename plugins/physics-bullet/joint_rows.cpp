@@ -110,6 +110,23 @@ std::array<Vec3, 3> eulerDirections(const Joint& j, const DynamicState& a, const
 
 }  // namespace
 
+void JointRows::writeLaws(Index joint, int axis, const Row& base) const {
+  laws.forEach(joint, axis, [&](const engine::AxisLaw& law) {
+    const Joint& j = step.model.joints[joint];
+    // The direction of the row is that in which coordinates count.
+    const bool inB = axis == 1;
+    const Vec3 own = stateOf(step.state, inB ? j.b : j.a).rotation * (inB ? j.inB.axis[1] : j.inA.axis[0]);
+    const double cosine = own.dot(law.along),
+                 sign = (j.type == JointType::slider && j.reversed ? -cosine : cosine) < 0 ? -1 : 1;
+    // A force of F - R v: v = F / R - impulse / (R dt).
+    Row row = base;
+    row.target = sign * law.force / law.resistance;
+    row.softness = 1 / (law.resistance * step.dt);
+    row.low = -law.maxForce * step.dt, row.high = law.maxForce * step.dt;
+    out.addRow(row);
+  });
+}
+
 void JointRows::writeAxis(Index joint, int index, Row row, double position, double rate) const {
   const JointAxis& axis = step.model.joints[joint].axes[static_cast<std::size_t>(index)];
   const engine::JointSoftness::Axis& soft = softness[joint].axes[static_cast<std::size_t>(index)];
@@ -119,6 +136,7 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
   const bool wheel = step.model.joints[joint].type == JointType::hinge2 && index == 1;
   const bool stops = axis.lowStop <= axis.highStop && !wheel, locked = stops && axis.lowStop == axis.highStop;
   row.target = 0;
+  writeLaws(joint, index, row);
   // Inertial forces of armature and damping, implicit: -armature (v - rate) / dt - damping v.
   if (const double inertia = axis.armature + axis.damping * dt; inertia > 0) {
     Row inertial = row;

@@ -3,6 +3,7 @@
 /// Rows of joints: motors and stops of all, and the constraints of those that are in no tree.
 
 #include "api/engine.h"
+#include "api/laws_by_joint.h"
 #include "api/scene_joint.h"
 #include "row_solver.h"
 
@@ -12,6 +13,7 @@ namespace spark::bullet {
 struct JointRows {
   const engine::Step& step;
   const std::vector<engine::JointSoftness>& softness;  ///< by joint
+  const engine::LawsByJoint& laws;
   RowSolver& out;
 
   /// Motor, stops, damping and armature of a degree of freedom of a tree.
@@ -22,6 +24,7 @@ struct JointRows {
   void writeJoint(Index joint, const Side& a, const Side& b) const;
 
  private:
+  void writeLaws(Index joint, int axis, const Row& row) const;
   void writeAxis(Index joint, int axis, Row row, double position, double rate) const;
 };
 

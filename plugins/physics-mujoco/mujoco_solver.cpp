@@ -160,7 +160,12 @@ void MujocoSolver::refuse(const std::string& why) {
 void MujocoSolver::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter,
                           int perPair, engine::Contacts& out) {
   filter_ = filter;
-  if (world_) world_->detect(model, state, filter, perPair, out);
+  if (!world_) return;
+  try {
+    world_->detect(model, state, filter, perPair, out);
+  } catch (const Error& e) {
+    refuse(e.what());
+  }
 }
 
 void MujocoSolver::step(engine::Step& step) {

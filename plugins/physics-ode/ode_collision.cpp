@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "api/joined_bodies.h"
+#include "api/physics.h"
 #include "spark/prefetch.h"
 
 namespace spark::ode {
@@ -397,6 +398,22 @@ int collide(const Pair& pair, int max, ConvexContacts& contacts, dContactGeom* f
 
 }  // namespace
 
+std::string OdeDetector::nameOf(const GeomData& geom) const {
+  const IPhysicsServer* server = nullptr;
+  if (Node* const parent = node_.parent()) server = parent->as<IPhysicsServer>();
+  return server && geom.owner ? server->colliderOf(geom.owner).leaf().path() : fmt::format("geom {}", geom.id);
+}
+
+int OdeDetector::collideOrFail(const Pair& pair, int max, dContactGeom* found) {
+  try {
+    return collide(pair, max, world_.convex, found);
+  } catch (const Failure& failure) {
+    node_.messages_.fail(node_, failure.what(),
+                         fmt::format("{} and {} do not touch in this step", nameOf(*pair.a), nameOf(*pair.b)));
+    return 0;
+  }
+}
+
 void OdeDetector::detect(const Model&, const State& state, engine::PairFilter filter, int perPair,
                          engine::Contacts& out) {
   CollisionWorld& w = world_;
@@ -422,7 +439,7 @@ void OdeDetector::detect(const Model&, const State& state, engine::PairFilter fi
   dContactGeom found[kMaxPerPair];
   const int max = std::clamp(perPair, 1, kMaxPerPair);
   for (const Pair& pair : w.pairs) {
-    const int n = collide(pair, max, w.convex, found);
+    const int n = collideOrFail(pair, max, found);
     for (int i = 0; i < n; ++i) {
       const dContactGeom& g = found[i];
       // Degenerate shapes may give a normal that is not finite.

@@ -106,6 +106,10 @@ class OdeDetector : public engine::IDetector {
   const CollisionWorld& world() const { return world_; }
 
  private:
+  /// Narrow phase of a pair; nothing where ODE fails.
+  int collideOrFail(const Pair& pair, int max, dContactGeom* found);
+  std::string nameOf(const GeomData& geom) const;
+
   OdeCollision& node_;
   CollisionWorld world_;
 };

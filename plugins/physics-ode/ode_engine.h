@@ -14,7 +14,7 @@ namespace spark {
 class OdeEngine : public Node, public engine::IEngine {
   SPARK_CLASS(OdeEngine, Node)
  public:
-  static constexpr engine::Capabilities kCapabilities{};
+  static constexpr engine::Capabilities kCapabilities{.armature = true, .laws = true};
   static void describe(Description<OdeEngine>& d) {
     d.doc("Rigid bodies by the Open Dynamics Engine (direct solver).");
     engine::describeEngine(d);

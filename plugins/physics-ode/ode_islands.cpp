@@ -54,6 +54,7 @@ void unite(WorldData& w, Index a, Index b, int rows) {
 void findJointSets(WorldData& w, const engine::Model& model) {
   for (Index i = 0; i < w.bodies.size(); ++i) w.bodies[i].islandParent = i, w.bodies[i].islandRows = 0;
   for (const engine::Joint& j : model.joints) unite(w, j.a, j.b, rowsOf(j.type));
+  for (const LawJoint& l : w.laws) unite(w, l.a, l.b, 1);
 }
 
 /// Makes the sets of bodies that joints and contacts connect.

@@ -315,6 +315,46 @@ void passMotors(WorldData& w, const engine::State& state) {
     }
 }
 
+// A law, force - resistance v', is a row J v' + x / resistance = force / resistance: a motor with that speed and CFM.
+
+void clearLaws(WorldData& w) {
+  for (const LawJoint& l : w.laws) dJointDestroy(l.joint);
+  w.laws.clear();
+  w.jointRowsCounted = false;
+}
+
+namespace {
+
+void addLawJoint(WorldData& w, const engine::Joint& from) {
+  LawJoint l{from.id, from.type == JointType::slider, from.a, from.b, nullptr};
+  l.joint = l.slides ? dJointCreateLMotor(w.id, nullptr) : dJointCreateAMotor(w.id, nullptr);
+  dJointAttach(l.joint, w.bodies[l.a].body, l.b == kNone ? nullptr : w.bodies[l.b].body);
+  l.slides ? dJointSetLMotorNumAxes(l.joint, 1) : dJointSetAMotorNumAxes(l.joint, 1);
+  w.laws.push_back(l);
+}
+
+}  // namespace
+
+void passLaws(WorldData& w, const engine::Step& step) {
+  const auto& laws = step.state.laws;
+  const auto of = [&](const engine::AxisLaw& law) -> const engine::Joint& { return step.model.joints[law.joint]; };
+  if (!std::equal(w.laws.begin(), w.laws.end(), laws.begin(), laws.end(),
+                  [&](const LawJoint& l, const engine::AxisLaw& law) { return l.isOf(of(law)); })) {
+    clearLaws(w);
+    for (const engine::AxisLaw& law : laws) addLawJoint(w, of(law));
+  }
+  for (std::size_t i = 0; i < laws.size(); ++i) {
+    const auto& [joint, axis, along, force, resistance, maxForce] = laws[i];
+    const LawJoint& l = w.laws[i];
+    const auto setAxis = l.slides ? dJointSetLMotorAxis : dJointSetAMotorAxis;
+    const auto set = l.slides ? dJointSetLMotorParam : dJointSetAMotorParam;
+    setAxis(l.joint, 0, 0, along.x(), along.y(), along.z());
+    set(l.joint, dParamVel, force / resistance);
+    set(l.joint, dParamCFM, 1 / resistance);
+    set(l.joint, dParamFMax, maxForce);
+  }
+}
+
 void readJoints(const WorldData& w, const engine::Step& step) {
   for (const Index i : w.measured) {
     const Index a = step.model.joints[i].a;

@@ -19,12 +19,20 @@ std::atomic<std::uint64_t> generation = 0;        // number of initialisations o
 thread_local std::uint64_t threadGeneration = 0;  // the one for which this thread's data was allocated
 thread_local std::string* receiver = nullptr;     // of messages in this thread
 
-/// ODE's message handler.
-void onMessage(int number, const char* format, va_list arguments) {
-  if (!receiver) return;
+std::string textOf(int number, const char* format, va_list arguments) {
   char line[256];
   std::vsnprintf(line, sizeof line, format, arguments);
-  *receiver = fmt::format("{} (ODE message {})", line, number);
+  return fmt::format("{} (ODE message {})", line, number);
+}
+
+/// ODE's handler of warnings.
+void onMessage(int number, const char* format, va_list arguments) {
+  if (receiver) *receiver = textOf(number, format, arguments);
+}
+
+/// ODE's handler of errors and assertions. ODE ends the process when it returns.
+[[noreturn]] void onFailure(int number, const char* format, va_list arguments) {
+  throw Failure("ODE failed: " + textOf(number, format, arguments));
 }
 
 }  // namespace
@@ -34,8 +42,8 @@ LibraryGuard::LibraryGuard() {
   if (guards++ > 0) return;
   dInitODE2(0);
   ++generation;
-  dSetErrorHandler(onMessage);
-  dSetDebugHandler(onMessage);
+  dSetErrorHandler(onFailure);
+  dSetDebugHandler(onFailure);
   dSetMessageHandler(onMessage);
 }
 
@@ -61,10 +69,12 @@ MessageCapture::~MessageCapture() { receiver = previous_; }
 
 void Messages::report(const Leaf& node) {
   if (last.empty()) return;
-  ++count;
-  if ((count & (count - 1)) == 0)
-    node.kernel().log().warning("{}: ODE reports: {} (message {})", node.path(), last, count);
+  if (isDue()) node.kernel().log().warning("{}: ODE reports: {} (message {})", node.path(), last, count);
   last.clear();
+}
+
+void Messages::fail(const Leaf& node, const std::string& text, const std::string& what) {
+  if (isDue()) node.kernel().log().error("{}: {}. {} (message {})", node.path(), text, what, count);
 }
 
 std::mutex& meshMutex() {

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <string>
 
+#include "spark/error.h"
 #include "spark/node.h"
 
 namespace spark::ode {
@@ -18,8 +19,14 @@ class LibraryGuard {
   LibraryGuard& operator=(const LibraryGuard&) = delete;
 };
 
-/// While it exists, messages from ODE in this thread (errors, assertions, warnings) are written to a string, and ODE
-/// neither ends the process nor prints. The constructor allocates ODE's data for this thread where needed.
+/// Thrown out of ODE where it would end the process, at an error or a failed assertion, through ODE's own frames. What
+/// it was at is lost: memory for the step until the next one, and its result.
+struct Failure : Error {
+  using Error::Error;
+};
+
+/// While it exists, warnings from ODE in this thread are written to a string, and it does not print. The constructor
+/// allocates ODE's data for this thread where needed.
 class MessageCapture {
  public:
   /// `text` receives the last message; it must outlive the capture. Captures may be nested: the innermost receives.
@@ -32,12 +39,17 @@ class MessageCapture {
   std::string* previous_;
 };
 
-/// The messages from ODE to one node.
+/// The messages from ODE to one node, failures among them.
 struct Messages {
   std::string last;        ///< the last one that was not reported yet; a MessageCapture writes it
   std::int64_t count = 0;  ///< of reported ones
   /// Logs the last message, if there is one, as from `node`: the 1st, 2nd, 4th, 8th ... time.
   void report(const Leaf& node);
+  /// Logs a failure as an error, likewise. `what`: what it ended, and what becomes of it.
+  void fail(const Leaf& node, const std::string& text, const std::string& what);
+
+ private:
+  bool isDue() { return ++count, (count & (count - 1)) == 0; }
 };
 
 /// Lock for collisions with triangle meshes: Debian's ODE has one set of mesh caches per process.

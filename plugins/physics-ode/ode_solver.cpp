@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 
 #include "api/single_precision.h"
 #include "ode_engine.h"
@@ -24,6 +25,7 @@ WorldData::WorldData(bool replay, Jobs& jobs)
 
 WorldData::~WorldData() {
   dJointGroupDestroy(contactJoints);
+  clearLaws(*this);
   for (const auto& j : joints) dJointDestroy(j->joint);
   for (const BodyData& b : bodies) dBodyDestroy(b.body);
   dWorldSetStepThreadingImplementation(id, nullptr, nullptr);
@@ -52,6 +54,7 @@ void readState(dBodyID body) {
   s.torque.setZero();
   s.awake = true;
   b.version = ++s.version;
+  b.movedStep = w.steps;
   w.enabled[i] = 1;
   if (w.listOrder) w.order.push_back(i);
 }
@@ -116,6 +119,7 @@ void OdeSolver::compile(const Model& model, const engine::State& state) {
   dWorldSetContactSurfaceLayer(w.id, p.contactSurfaceLayer);
 
   // Removed joints before the bodies that they connect.
+  if (std::exchange(w.structure, model.structure) != model.structure) clearLaws(w);
   std::size_t kept = 0;
   for (std::size_t i = 0; i < w.joints.size(); ++i) {
     if (engine::indexOf(model.joints, w.joints[i]->id) == kNone) {
@@ -128,7 +132,11 @@ void OdeSolver::compile(const Model& model, const engine::State& state) {
   w.joints.resize(kept);
   w.motors.resize(kept);
   compileBodies(w, model);
-  compileJoints(w, model, state);
+  try {
+    compileJoints(w, model, state);
+  } catch (const Failure& failure) {
+    engine_.messages_.fail(engine_, failure.what(), "A joint has no effect, or not that of its frames");
+  }
   w.jointRowsCounted = false;
   // Joints were set with the bodies at other places: their states have to be passed again.
   for (BodyData& b : w.bodies) b.version = 0;
@@ -255,6 +263,21 @@ void readContacts(const WorldData& w, const engine::Step& step) {
   }
 }
 
+constexpr const char* kIslandFailed =
+    "The island was not stepped: its bodies are put back to their last poses, at rest";
+
+/// The bodies that ODE failed to move have no state: the physics server repairs it, and names them.
+void abandon(WorldData& w, const engine::Step& step) {
+  for (Index i = 0; i < w.bodies.size(); ++i) {
+    if (!w.needed[i] || w.bodies[i].movedStep == w.steps) continue;
+    DynamicState& s = step.state.bodies[i];
+    s.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+    s.force.setZero(), s.torque.setZero();
+    s.awake = true;
+    w.bodies[i].version = 0;
+  }
+}
+
 }  // namespace
 
 void OdeSolver::step(engine::Step& step) {
@@ -266,9 +289,18 @@ void OdeSolver::step(engine::Step& step) {
   passTurns(w, step.model, step.state);
   passMotors(w, step.state);
   writeState(w, step);
+  passLaws(w, step);
   addContactJoints(w, step);
   w.state = &step.state;
-  solve(step);
+  std::string failure;
+  try {
+    solve(step);
+    failure = w.threads->takeFailure();
+  } catch (const Failure& f) {
+    failure = f.what();
+    w.threads->takeFailure();
+  }
+  if (!failure.empty()) abandon(w, step), engine_.messages_.fail(engine_, failure, kIslandFailed);
   for (const Index i : w.order) step.state.markMoved(i);
   readJoints(w, step);
   readContacts(w, step);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "ode_process.h"
 
@@ -25,6 +26,23 @@ void IslandThreads::Lane::grow(std::size_t calls) {
   // Each call is in one of them.
   free.reserve(memory.size());
   posted.reserve(memory.size());
+}
+
+std::string IslandThreads::takeFailure() {
+  std::string text = std::exchange(outside_.failure, {});
+  for (Lane& lane : lanes_)
+    if (!lane.failure.empty()) text = std::exchange(lane.failure, {});
+  if (text.empty()) return text;
+  for (Lane& lane : lanes_) lane.abandon();
+  outside_.abandon();
+  failed_ = false;
+  return text;
+}
+
+void IslandThreads::Lane::abandon() {
+  posted.clear();
+  free.clear();
+  for (Call& call : memory) free.push_back(&call);
 }
 
 IslandThreads::Call& IslandThreads::post(Call* dependent, int* fault, std::size_t dependencies,
@@ -93,7 +111,12 @@ void IslandThreads::run(Lane& lane, Call& call) {
   // While it runs, the call depends on itself; it may add further calls as dependencies.
   call.started = true;
   call.dependencies = 1;
-  if (!call.function(call.context, call.index, reinterpret_cast<dCallReleaseeID>(&call))) failed_ = true;
+  try {
+    if (!call.function(call.context, call.index, reinterpret_cast<dCallReleaseeID>(&call))) failed_ = true;
+  } catch (const Failure& failure) {
+    lane.failure = failure.what();
+    failed_ = true;
+  }
   finishDependency(lane, &call);
 }
 

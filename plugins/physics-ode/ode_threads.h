@@ -50,6 +50,9 @@ class IslandThreads {
   }
   /// Writes the last message from ODE in the jobs of the last step to `text`; `text` is unchanged without one.
   void takeMessage(std::string& text);
+  /// ODE's text when calls of the last step failed (see Failure): islands remain that were not stepped. Otherwise
+  /// empty.
+  std::string takeFailure();
 
  private:
   struct Lane;
@@ -71,8 +74,11 @@ class IslandThreads {
     std::vector<Call*> free;    ///< calls of `memory` that are not in use
     std::vector<Call*> posted;  ///< calls that have not started, in order of posting
     std::string message;        ///< the last message from ODE in this thread
+    std::string failure;        ///< of a call
     /// Makes room for this many calls.
     void grow(std::size_t calls);
+    /// Forgets calls that wait for one that failed.
+    void abandon();
   };
   static thread_local Lane* current;  ///< of the job that this thread runs; nullptr outside of jobs
 

@@ -26,6 +26,7 @@ struct BodyData {
   Mat3 inertia = Mat3::Zero();
   bool gravity = true;
   std::uint32_t version = 0;          ///< of the state that ODE has, see DynamicState::version; 0: of none
+  std::uint64_t movedStep = 0;        ///< number of the last step in which ODE moved it
   std::uint64_t lastContactStep = 0;  ///< number of the last step with a contact
   int staticRows = 0;                 ///< constraint rows of its contacts with static geoms, in step lastContactStep
   std::uint64_t visitedStep = 0;      ///< number of the last step in which the order of bodies was found
@@ -45,6 +46,15 @@ struct JointData {
   bool wantsFeedback = false;
 };
 
+/// A joint of ODE beside one of the model, for a law: a motor of its own, with a soft row.
+struct LawJoint {
+  std::uint64_t id = 0;  ///< of the model's joint
+  bool slides = false;
+  engine::Index a = engine::kNone, b = engine::kNone;
+  dJointID joint = nullptr;
+  bool isOf(const engine::Joint& j) const { return id == j.id && a == j.a && b == j.b; }
+};
+
 /// A world of ODE. The elements are as in the model.
 struct WorldData {
   LibraryGuard library;
@@ -52,9 +62,11 @@ struct WorldData {
   std::unique_ptr<IslandThreads> threads;
   dJointGroupID contactJoints;  ///< contact joints of the current step
   bool exactReplay;
+  std::uint64_t structure = 0;  ///< of the model, when it was compiled
   std::uint64_t steps = 0;
   std::vector<BodyData> bodies;
   std::vector<std::unique_ptr<JointData>> joints;   ///< ODE refers to their feedback
+  std::vector<LawJoint> laws;                       ///< of State::laws
   std::vector<dJointFeedback> feedback;             ///< of each contact joint that needs it
   std::vector<engine::Index> measured;              ///< the joints whose forces are measured
   std::vector<engine::Motors> motors;               ///< by joint, as passed to ODE
@@ -95,6 +107,10 @@ void compileJoints(WorldData& w, const engine::Model& model, const engine::State
 void passTurns(WorldData& w, const engine::Model& model, const engine::State& state);
 /// Passes the motors' speeds and forces, which change in every step.
 void passMotors(WorldData& w, const engine::State& state);
+/// Passes the laws of joints.
+void passLaws(WorldData& w, const engine::Step& step);
+/// Removes their joints: passLaws() makes them anew, so that their order does not depend on what was before.
+void clearLaws(WorldData& w);
 /// Copies what ODE measured at the joints of the stepped bodies.
 void readJoints(const WorldData& w, const engine::Step& step);
 

@@ -68,7 +68,7 @@ class TimedEngine : public spark::Node, public engine::IEngine {
     d.link(&TimedEngine::deferred_, Child<engine::IEngine>());
   }
   Leaf& leaf() override { return *this; }
-  engine::Capabilities capabilities() const override { return {.armature = true, .damping = true}; }
+  engine::Capabilities capabilities() const override { return {.armature = true, .laws = true, .damping = true}; }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<TimedSolver>(*deferred_);
   }
