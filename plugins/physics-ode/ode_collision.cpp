@@ -349,6 +349,12 @@ PlacedShape placed(const GeomData& g) {
   return {g.shape, g.shared.hull ? &g.shared.hull->hull : nullptr, toVec(dGeomGetPosition(g.geom)), toMat(g.rotation)};
 }
 
+/// Degenerate shapes may give numbers that are not finite; faces that touch exactly, without depth, no normal.
+bool isContact(const dContactGeom& g) {
+  const double normal = toVec(g.normal).squaredNorm();
+  return toVec(g.pos).allFinite() && std::isfinite(g.depth) && normal > 0.5 && normal < 2;
+}
+
 /// Contacts of a pair with a convex hull.
 int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts& contacts, dContactGeom* found) {
   const bool second = a.shape.shape != Shape::convex;
@@ -377,7 +383,7 @@ int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts&
       break;
     default:
       count = ask(1);
-      if (count > 0) count = contacts.spread(placed(hull), placed(other), max, found);
+      if (count > 0 && isContact(found[0])) count = contacts.spread(placed(hull), placed(other), max, found);
   }
   if (second)
     for (int i = 0; i < count; ++i)
@@ -442,8 +448,7 @@ void OdeDetector::detect(const Model&, const State& state, engine::PairFilter fi
     const int n = collideOrFail(pair, max, found);
     for (int i = 0; i < n; ++i) {
       const dContactGeom& g = found[i];
-      // Degenerate shapes may give a normal that is not finite.
-      if (!toVec(g.pos).allFinite() || !toVec(g.normal).allFinite() || !std::isfinite(g.depth)) continue;
+      if (!isContact(g)) continue;
       Contact& c = out.emplace_back();
       c.geomA = pair.a->index;
       c.geomB = pair.b->index;
