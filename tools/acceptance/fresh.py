@@ -60,9 +60,9 @@ def fresh_clone():
 
 
 @contextlib.contextmanager
-def busy(loops):
-    """A context in which this many busy processes run, in a separate session."""
-    running = [subprocess.Popen(["sh", "-c", "while :; do :; done"], start_new_session=True) for _ in range(loops)]
+def busy(loops, apart=True):
+    """A context in which this many busy processes run; `apart`: in a separate session, so that priorities do not count where the system groups by session."""
+    running = [subprocess.Popen(["sh", "-c", "while :; do :; done"], start_new_session=apart) for _ in range(loops)]
     try:
         yield
     finally:
