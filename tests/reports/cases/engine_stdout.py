@@ -13,11 +13,22 @@ LUA = Path(__file__).resolve().parents[3] / "lua"
 OTHERS = {"camera", "convert", "course", "house", "listings", "logplayer", "materials", "naotypes", "referee", "shot_clock", "soccer-house"}
 
 
+def start(config):
+    """The finished host, with free ports for all that the config has a port for."""
+    ports = ["agent", "monitor", "web"]
+    while True:
+        command = [Path(os.environ["SPARKBIN"]) / "sparkhost", "--config", config, "--rate", "max", "--duration", "0.1", "--log-level", "error"]
+        words = [word for name in ports for word in (f"--{name}-port", "0")]
+        done = subprocess.run([*map(str, command), *words], capture_output=True, text=True, errors="replace")
+        refused = [name for name in ports if f"sparkhost: --{name}-port 0:" in done.stderr]
+        if not refused:
+            return done
+        ports.remove(refused[0])
+
+
 def run(config):
     """What is wrong with its stdout; "" if nothing is."""
-    command = [Path(os.environ["SPARKBIN"]) / "sparkhost", "--config", config, "--rate", "max", "--duration", "0.1", "--log-level", "error"]
-    ports = [word for name in ("agent", "monitor", "web") for word in (f"--{name}-port", "0")]
-    done = subprocess.run([*map(str, command), *ports], capture_output=True, text=True, errors="replace")
+    done = start(config)
     lines = done.stdout.splitlines()
     try:
         documents = [json.loads(line) for line in lines]
