@@ -143,17 +143,18 @@ class ActuatorEffector : public Effector {
          leastForce_ = -HUGE_VAL, mostForce_ = HUGE_VAL, least_ = -HUGE_VAL, most_ = HUGE_VAL, control_ = 0;
 };
 
-/// `(name u)`: sets the control of the actuator above it, one that only the engine in use has.
+/// `(name u)`: sets the control of the actuator beside it, one that only the engine in use has.
 class EngineActuatorEffector : public Effector {
   SPARK_CLASS(EngineActuatorEffector, Effector)
  public:
   static void describe(Description<EngineActuatorEffector>& d) {
-    d.doc("Sets the control of the actuator above it, for instance a MujocoActuator: (name u).");
-    d.link(&EngineActuatorEffector::actuator_, Above<IActuator>()).required("expected an actuator above it");
+    d.doc("Sets the control of the actuator beside it, for instance a MujocoActuator: (name u).");
+    d.link(&EngineActuatorEffector::actuator_, Above<Transform>().child<IActuator>())
+        .required("It does nothing. Put it beside the actuator it belongs to.");
   }
   std::string act(const Element& action) override {
     IActuator* const actuator = actuator_.get();
-    if (!actuator) return "expected an actuator above it, found none";
+    if (!actuator) return "expected an actuator beside it, found none";
     NumberArguments read(action);
     if (double u = 0; read(0, u)) actuator->setControl(u);
     return read.remark();

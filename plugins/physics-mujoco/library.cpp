@@ -21,6 +21,10 @@ int discard(const mjModel* m, mjData*, int geom1, int geom2) {
   return session && session->model == m && session->filter && !session->filter(session->context, geom1, geom2);
 }
 
+void onStage(const mjModel* m, mjData*) {
+  if (session && session->model == m && session->stage) session->stage(session->context);
+}
+
 void onWarning(const char* text) {
   if (session) *session->text = text;
 }
@@ -36,6 +40,7 @@ LibraryGuard::LibraryGuard() {
   mju_user_warning = onWarning;
   mju_user_error = [](const char* text) { throw Error(std::string("MuJoCo: ") + text); };
   mjcb_contactfilter = discard;
+  mjcb_control = onStage;
 }
 
 LibraryGuard::~LibraryGuard() {
@@ -44,10 +49,11 @@ LibraryGuard::~LibraryGuard() {
   mju_user_warning = nullptr;
   mju_user_error = nullptr;
   mjcb_contactfilter = nullptr;
+  mjcb_control = nullptr;
 }
 
-Session::Session(std::string& to, const mjModel* m, Filter f, void* c)
-    : text(&to), model(m), filter(f), context(c), outer_(session) {
+Session::Session(std::string& to, const mjModel* m, Filter f, void* c, Stage s)
+    : text(&to), model(m), filter(f), context(c), stage(s), outer_(session) {
   session = this;
 }
 

@@ -35,7 +35,9 @@ ModelPointer compile(const std::string& mjcf);
 class Session {
  public:
   using Filter = bool (*)(void* context, int geom1, int geom2);
-  Session(std::string& text, const mjModel* model, Filter filter, void* context);
+  /// Called in each further stage of the integrator, when its positions and velocities are known: it sets forces.
+  using Stage = void (*)(void* context);
+  Session(std::string& text, const mjModel* model, Filter filter, void* context, Stage stage = nullptr);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -45,6 +47,7 @@ class Session {
   const mjModel* model;
   Filter filter;
   void* context;
+  Stage stage;
 
  private:
   Session* outer_;

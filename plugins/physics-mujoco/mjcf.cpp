@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <unordered_map>
 
 #include "api/scene_joint.h"
@@ -18,6 +19,13 @@ using engine::Model;
 using engine::Shape;
 
 namespace {
+
+/// What a ball or a free body has beside its coordinates.
+std::optional<FreedomNumbers> freedomOf(const Model& model, std::uint64_t id) {
+  for (const auto& [number, n] : model.extensions.world.all<FreedomNumbers>(kConstraintNumbers))
+    if (n.of == id && id != 0) return n;
+  return std::nullopt;
+}
 
 Pose poseOf(const engine::State& state, Index body) {
   if (body == kNone) return {};
@@ -34,7 +42,13 @@ Trees::Trees(const Model& model, const engine::State& state) {
     const Pose above = link.parent == kNone ? Pose{} : poseOf(state, links[link.parent].body);
     link.zero = compose(inverse(above), poseOf(state, link.body));
     if (!j) continue;
-    const Mat3 r = compose(inverse(poseOf(state, j->a)), poseOf(state, j->b)).rotation;
+    Mat3 r = compose(inverse(poseOf(state, j->a)), poseOf(state, j->b)).rotation;
+    if (const auto n = freedomOf(model, j->id)) {
+      // Its coordinates are 0 where it says.
+      const auto& q = n->restRotation;
+      const Mat3 rest = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+      r = link.childIsA ? Mat3(rest.transpose()) : rest;
+    }
     const Pose b{j->inA.anchor - r * j->inB.anchor, r};
     link.zero = link.childIsA ? inverse(b) : b;
   }
@@ -67,6 +81,7 @@ void Trees::mergeConnectors(const Model& model) {
 std::string bodyName(Index body) { return fmt::format("b{}", body); }
 std::string partName(Index body, std::size_t part) { return fmt::format("b{}p{}", body, part); }
 std::string geomName(Index geom) { return fmt::format("g{}", geom); }
+std::string freeJointName(Index body) { return fmt::format("f{}", body); }
 std::string jointName(Index joint, int coordinate) { return fmt::format("j{}_{}", joint, coordinate); }
 
 int coordinatesOf(JointType type) {
@@ -125,7 +140,14 @@ struct Writer {
     // No shape of MuJoCo's may be without extent.
     const auto length = [](double v) { return std::max(v, 1e-6); };
     Pose pose = g.offset;
+    const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
     switch (s.shape) {
+      case Shape::convex:
+        if (m.ellipsoid[0] > 0)
+          put(R"( type="ellipsoid" size="{}")", fmt::join(m.ellipsoid, " "));
+        else
+          put(R"( type="mesh" mesh="m{}")", meshOf.at(s.mesh.get()));
+        break;
       case Shape::box:
         put(R"( type="box" size="{} {} {}")", length(s.lengths.x() / 2), length(s.lengths.y() / 2),
             length(s.lengths.z() / 2));
@@ -155,10 +177,9 @@ struct Writer {
     }
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
     putPose(pose);
-    const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
     put(R"( friction="{}" condim="{}" priority="{}")", fmt::join(m.friction, " "), m.condim, m.priority);
-    put(R"( solref="{}" solimp="{}" margin="{}" gap="{}")", fmt::join(m.solref, " "), fmt::join(m.solimp, " "),
-        m.margin, m.gap);
+    put(R"( solref="{}" solimp="{}" solmix="{}" margin="{}" gap="{}")", fmt::join(m.solref, " "),
+        fmt::join(m.solimp, " "), m.solmix, m.margin, m.gap);
     put("/>\n");
   }
 
@@ -180,14 +201,30 @@ struct Writer {
     const bool opposite = reversedUniversal             ? axis == 0
                           : j.type == JointType::hinge2 ? axis == 1
                                                         : j.type == JointType::hinge && j.reversed;
-    if (own.stiffness > 0)
+    if (own.stiffness > 0 || own.springPosition != 0)
       put(R"( stiffness="{}" springref="{}")", own.stiffness, (opposite ? -1 : 1) * own.springPosition);
+  }
+
+  /// What a ball or a free joint has besides.
+  void putFreedom(std::uint64_t id) {
+    const auto n = freedomOf(model, id);
+    if (!n) return;
+    put(R"( armature="{}" frictionloss="{}" stiffness="{}")", n->armature, n->frictionLoss, n->stiffness);
+    put(R"( solreffriction="{}" solimpfriction="{}")", fmt::join(n->frictionSolref, " "),
+        fmt::join(n->frictionSolimp, " "));
+    if (!(n->mostAngle > 0)) return;
+    put(R"( limited="true" range="0 {}" margin="{}")", n->mostAngle, n->stopMargin);
+    put(R"( solreflimit="{}" solimplimit="{}")", fmt::join(n->stopSolref, " "), fmt::join(n->stopSolimp, " "));
   }
 
   /// The joint of a link, in the frame of its body. Coordinates are those of the child relative to the parent, which
   /// are the joint's, or their opposites where the child is body b.
   void putJoint(const Link& link) {
-    if (link.joint == kNone) return put("<freejoint/>\n");
+    if (link.joint == kNone) {
+      put(R"(<joint type="free" name="{}")", freeJointName(link.body));
+      putFreedom(model.bodies[link.body].id);
+      return put("/>\n");
+    }
     const Joint& j = model.joints[link.joint];
     const double sign = link.childIsA ? 1 : -1;
     // In the frame of the body that has the joint.
@@ -221,8 +258,10 @@ struct Writer {
         put("/>\n");
         break;
       case JointType::ball:
-        put(R"(<joint name="{}" type="ball" pos="{}" damping="{}"/>)", jointName(link.joint, 0), text(at),
+        put(R"(<joint name="{}" type="ball" pos="{}" damping="{}")", jointName(link.joint, 0), text(at),
             j.axes[0].damping);
+        putFreedom(j.id);
+        put("/>\n");
         break;
       case JointType::universal:
         // The first joint of a body is the one next to the parent.
@@ -347,14 +386,12 @@ struct Writer {
 
 /// One actuator for each coordinate with an axis; its numbers are written in each step.
 void putActuators(Writer& w) {
-  w.put("<actuator>\n");
   for (const Link& link : w.trees.links) {
     if (link.joint == kNone || w.model.joints[link.joint].type == JointType::ball) continue;
     for (int c = 0; c < coordinatesOf(w.model.joints[link.joint].type); ++c)
       w.put(R"(<general name="{0}" joint="{0}" gainprm="0" biastype="affine" biasprm="0 0 0"/>)",
             jointName(link.joint, c));
   }
-  w.put("</actuator>\n");
 }
 
 }  // namespace
@@ -367,7 +404,7 @@ bool hasActuators(const Model& model) { return optionsOf(model).integrator == 1;
 
 bool hasOwnDrag(const Model& model) {
   const OptionNumbers o = optionsOf(model);
-  return (o.density > 0 || o.viscosity > 0) && o.integrator == 0;
+  return (o.density > 0 || o.viscosity > 0) && o.integrator != 1;
 }
 
 std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes,
@@ -387,8 +424,15 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
         Writer::text(model.parameters.gravity), OptionNumbers::kIntegrators[static_cast<std::size_t>(o.integrator)],
         OptionNumbers::kCones[static_cast<std::size_t>(o.cone)],
         OptionNumbers::kSolvers[static_cast<std::size_t>(o.solver)], o.iterations);
-  w.put(R"( tolerance="{}" impratio="{}" density="{}" viscosity="{}" wind="{}"/>)", o.tolerance, o.impratio,
+  w.put(R"( tolerance="{}" impratio="{}" density="{}" viscosity="{}" wind="{}")", o.tolerance, o.impratio,
         hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity, fmt::join(o.wind, " "));
+  w.put(R"( noslip_iterations="{}" noslip_tolerance="{}" mpr_iterations="{}" mpr_tolerance="{}")", o.noslipIterations,
+        o.noslipTolerance, o.mprIterations, o.mprTolerance);
+  w.put(R"( o_margin="{}" o_solref="{}" o_solimp="{}">)", o.overrideMargin, fmt::join(o.overrideSolref, " "),
+        fmt::join(o.overrideSolimp, " "));
+  const auto flag = [](std::int64_t on) { return on != 0 ? "enable" : "disable"; };
+  w.put(R"(<flag refsafe="{}" override="{}" multiccd="{}"/></option>)", flag(o.refsafe), flag(o.overrides),
+        flag(o.multiccd));
   w.put(R"(<size nconmax="{}" njmax="{}"/>)", sizes.contacts, sizes.rows);
   w.putMeshes();
   w.put("<worldbody>\n");
@@ -398,7 +442,10 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
   for (std::size_t i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent == kNone) w.putLink(i);
   w.put("</worldbody>\n");
+  w.put("<actuator>\n");
   if (hasActuators(model)) putActuators(w);
+  w.out += constraints.actuators();
+  w.put("</actuator>\n");
   w.out += constraints.text();
   w.put("</mujoco>\n");
   return std::move(w.out);

@@ -43,6 +43,8 @@ std::string bodyName(Index body);
 std::string partName(Index body, std::size_t part);
 std::string geomName(Index geom);
 std::string jointName(Index joint, int coordinate);
+/// Of a free body.
+std::string freeJointName(Index body);
 
 /// The number of coordinates that a joint has in MuJoCo: hinge and slider 1, universal 2, hinge2 3 (suspension,
 /// steering, rolling), fixed 0; a ball has one joint of its own kind.

@@ -19,9 +19,9 @@ namespace mujoco {
 /// or none. Points and rotations in the frames of links, or of the world.
 struct EqualityNumbers {
   static constexpr std::string_view kKind = "MujocoEquality";
-  static constexpr std::array kTypes{"connect", "weld", "joint"};
+  static constexpr std::array kTypes{"connect", "weld", "joint", "tendon"};
   std::int64_t type = 0;                            ///< index of these names
-  std::uint64_t first = 0, second = 0;              ///< bodies, or of `joint` joints
+  std::uint64_t first = 0, second = 0;              ///< bodies; or joints; or tendons: their numbers and 1
   std::int64_t named = 0;                           ///< bits 1 and 2: first and second are elements, not the world
   std::int64_t part1 = 0, part2 = 0;                ///< of the bodies: indices in Body::parts, 0 where there is none
   std::array<double, 3> anchor1{}, anchor2{};       ///< connect, weld: the points that coincide [m]
@@ -37,17 +37,26 @@ struct EqualityNumbers {
 /// points of bodies. Lengths in m, or for sums in the joints' units.
 struct TendonNumbers {
   static constexpr std::string_view kKind = "MujocoTendon";
-  static constexpr std::size_t kMaxElements = 32;
+  static constexpr std::size_t kMaxElements = 64;
+  /// What a path goes along: points, and around spheres and cylinders. A pulley divides what comes behind it.
+  enum Kind : std::int64_t { kPoint, kSphere, kCylinder, kPulley };
   struct Element {
-    std::uint64_t id = 0;           ///< a joint; or a body, 0: the world
-    std::array<double, 3> point{};  ///< in the link's frame, or the world's [m]; of a joint the coefficient in [0]
+    std::uint64_t id = 0;  ///< a joint; or a body, 0: the world
+    std::array<double, 3>
+        point{};  ///< in the link's frame, or the world's [m]; of a joint or a pulley its number in [0]
+    std::int64_t kind = kPoint;
+    double radius = 0;                           ///< of a sphere or cylinder [m]
+    std::array<double, 4> rotation{1, 0, 0, 0};  ///< of a cylinder, w x y z
+    std::int64_t hasSide = 0;                    ///< the path goes on the side of a point, or within the geometry
+    std::uint64_t sideId = 0;                    ///< the body that the point is in; 0: the world
+    std::array<double, 3> side{};                ///< m
   };
   std::int64_t spatial = 0;  ///< 1: `elements` are points
   std::int64_t count = 0;    ///< of elements
   std::int64_t lacks = 0;    ///< an element named a body or a joint that was not there
   std::array<Element, kMaxElements> elements{};
   double stiffness = 0, damping = 0, frictionLoss = 0;
-  double springLength = 0;  ///< at which the spring rests
+  double springLength = 0;  ///< at which the spring rests; below 0 for a path: that where the joints' springs rest
   std::int64_t limited = 0;
   std::array<double, 2> range{};
   double margin = 0;  ///< distance from the limit at which it begins to act
@@ -68,6 +77,9 @@ void requireFinite(const Leaf& node, const std::array<double, N>& numbers) {
 }
 template <class Other>
 void requireFinite(const Leaf&, const Other&) {}
+
+/// The identity of the body or joint at a path, as seen from a node; 0: there is none.
+std::uint64_t identityAt(const Leaf& from, const std::string& path, bool joint);
 
 }  // namespace mujoco
 
@@ -121,11 +133,15 @@ class MujocoTendon : public MujocoConstraint<mujoco::TendonNumbers>, public ISce
  private:
   void addJoint(const std::string& path, double coefficient);
   void addPoint(const std::string& path, double x, double y, double z);
-  void add(bool spatial, const std::string& path, const std::array<double, 3>& point);
+  void addSphere(const std::string& path, double x, double y, double z, double radius);
+  void addCylinder(const std::string& path, double x, double y, double z, double radius, const List& rotation);
+  void setSide(const std::string& path, double x, double y, double z);
+  void addPulley(double divisor);
+  void add(bool spatial, const std::string& path, const mujoco::TendonNumbers::Element& element);
   void resolve();
   bool limited() const { return numbers().limited != 0; }
   void setLimited(bool on) { set<&mujoco::TendonNumbers::limited>(on); }
-  std::vector<std::string> paths_;  ///< of the elements
+  std::vector<std::string> paths_, sides_;  ///< of the elements
 };
 
 }  // namespace spark

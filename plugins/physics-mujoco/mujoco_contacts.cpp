@@ -21,6 +21,7 @@ bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
   const MujocoWorld& w = *static_cast<MujocoWorld*>(world);
   const Index i = w.geomOf_[geom1], k = w.geomOf_[geom2];
   if (i == kNone || k == kNone) return false;
+  if (!w.chosen_.empty() && contains(w.chosen_, pairOf(i, k))) return true;
   const engine::Geom &a = w.model_->geoms[i], &b = w.model_->geoms[k];
   if (a.body != kNone && a.body == b.body) return false;
   if (a.space == b.space && !w.model_->spaces[a.space].inner) return false;
@@ -89,11 +90,14 @@ void MujocoWorld::detect(const Model& model, const State& state, engine::PairFil
   }
 }
 
-void MujocoWorld::releaseUnsolved(std::span<const Contact> contacts) {
+void MujocoWorld::findUnsolved(std::span<const Contact> contacts) {
   ghosts_.clear();
   for (const Contact& c : contacts)
     if (!c.solve) ghosts_.push_back(pairOf(c.geomA, c.geomB));
   std::sort(ghosts_.begin(), ghosts_.end());
+}
+
+void MujocoWorld::releaseUnsolved() {
   for (int i = 0; i < d_->ncon; ++i) {
     const mjContact& c = d_->contact[i];
     if (c.efc_address < 0) continue;

@@ -13,4 +13,5 @@ void MujocoEngine::report(const std::string& message) {
 }  // namespace spark
 
 SPARK_PLUGIN("physics-mujoco", "1.0", "MuJoCo: contacts and dynamics in coordinates of joints.", spark::MujocoEngine,
-             spark::MujocoOptions, spark::MujocoSurface, spark::MujocoAxis, spark::MujocoEquality, spark::MujocoTendon)
+             spark::MujocoOptions, spark::MujocoSurface, spark::MujocoAxis, spark::MujocoEquality, spark::MujocoTendon,
+             spark::MujocoActuator, spark::MujocoPair, spark::MujocoFreedom)

@@ -4,7 +4,7 @@
 
 #include "api/inputs.h"
 #include "api/phases.h"
-#include "mujoco_constraints.h"
+#include "mujoco_actuators.h"
 #include "mujoco_nodes.h"
 #include "mujoco_solver.h"
 #include "spark/describe.h"
@@ -50,10 +50,12 @@ class MujocoEngine : public Leaf, public engine::IEngine {
   Leaf& leaf() override { return *this; }
   engine::Capabilities capabilities() const override { return kCapabilities; }
   bool reads(std::uint64_t kind) const override {
-    return kind == engine::kindOf(mujoco::SurfaceNumbers::kKind) ||
-           kind == engine::kindOf(mujoco::AxisNumbers::kKind) || kind == engine::kindOf(mujoco::OptionNumbers::kKind) ||
-           kind == engine::kindOf(mujoco::EqualityNumbers::kKind) ||
-           kind == engine::kindOf(mujoco::TendonNumbers::kKind);
+    using namespace mujoco;
+    for (const std::string_view own :
+         {SurfaceNumbers::kKind, AxisNumbers::kKind, OptionNumbers::kKind, EqualityNumbers::kKind, TendonNumbers::kKind,
+          ActuatorNumbers::kKind, PairNumbers::kKind, FreedomNumbers::kKind})
+      if (kind == engine::kindOf(own)) return true;
+    return false;
   }
   std::unique_ptr<engine::ISolver> create(const engine::Model&) override {
     return std::make_unique<mujoco::MujocoSolver>(*this);

@@ -98,7 +98,8 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
 }
 
 void MujocoWorld::passControls(const State& state) {
-  for (int i = 0; i < m_->nu; ++i) mju_zero(m_->actuator_biasprm + mjNBIAS * i, 3);
+  for (const int actuator : actuators_)
+    if (actuator >= 0) mju_zero(m_->actuator_biasprm + mjNBIAS * actuator, 3);
   for (const engine::AxisControl& c : state.controls) {
     const auto [joint, sign] = coordinates_[c.joint][c.axis];
     if (joint < 0) continue;
@@ -128,6 +129,12 @@ void MujocoWorld::passControls(const State& state) {
     const double angle = sign * d_->qpos[m_->jnt_qposadr[joint]], rate = sign * d_->qvel[dof];
     d_->qfrc_applied[dof] += sign * (own.at(angle, rate) - whole.at(angle, rate));
   }
+}
+
+void MujocoWorld::passInputs(const State& state) {
+  for (const auto& [kind, actuator] : inputs_)
+    for (const engine::BlockInput& input : state.inputs)
+      if (input.kind == kind) d_->ctrl[actuator] = input.value;
 }
 
 void MujocoWorld::applyControls(const State& state) {

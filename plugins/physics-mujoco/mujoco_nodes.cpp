@@ -25,6 +25,12 @@ void MujocoSurface::describe(Description<MujocoSurface>& d) {
       .min(0)
       .doc("Distance at which contacts begin.");
   d.property("gap", &S::get<&N::gap>, &S::set<&N::gap>).unit("m").min(0).doc("Part of that distance without force.");
+  d.property("solmix", &S::get<&N::solmix>, &S::set<&N::solmix>)
+      .min(0)
+      .doc("Weight of solref and solimp against those of the other surface.");
+  d.property("ellipsoid", &S::get<&N::ellipsoid>, &S::set<&N::ellipsoid>)
+      .unit("m")
+      .doc("Half axes of the ellipsoid that a convex collider stands for; 0: none.");
 }
 
 void MujocoSurface::setCondim(std::int64_t n) {
@@ -60,7 +66,7 @@ void MujocoOptions::describe(Description<MujocoOptions>& d) {
   using N = mujoco::OptionNumbers;
   engine::describeExtension(d, "What MuJoCo alone reads of the world above it.");
   d.property("integrator", &O::name<&N::integrator, N::kIntegrators>, &O::setName<&N::integrator, N::kIntegrators>)
-      .doc("Euler or implicit.");
+      .doc("Euler, implicit or RK4.");
   d.property("cone", &O::name<&N::cone, N::kCones>, &O::setName<&N::cone, N::kCones>)
       .doc("Friction cones, pyramidal or elliptic.");
   d.property("solver", &O::name<&N::solver, N::kSolvers>, &O::setName<&N::solver, N::kSolvers>)
@@ -82,6 +88,29 @@ void MujocoOptions::describe(Description<MujocoOptions>& d) {
       .unit("Pa s")
       .min(0)
       .doc("Viscosity of the medium.");
+  d.property("noslipIterations", &O::get<&N::noslipIterations>, &O::set<&N::noslipIterations>)
+      .range(0, 10000)
+      .doc("Iterations of the solver that takes back slip; 0: none.");
+  d.property("noslipTolerance", &O::get<&N::noslipTolerance>, &O::set<&N::noslipTolerance>)
+      .range(0, 1)
+      .doc("Improvement at which it stops.");
+  d.property("mprIterations", &O::get<&N::mprIterations>, &O::set<&N::mprIterations>)
+      .range(1, 10000)
+      .doc("Most iterations of the collision of convex shapes.");
+  d.property("mprTolerance", &O::get<&N::mprTolerance>, &O::set<&N::mprTolerance>)
+      .range(0, 1)
+      .doc("Improvement at which it stops.");
+  d.property("refsafe", &O::is<&N::refsafe>, &O::setIs<&N::refsafe>)
+      .doc("Time constants of constraints are at least two steps.");
+  d.property("multiccd", &O::is<&N::multiccd>, &O::setIs<&N::multiccd>).doc("Convex shapes touch in several points.");
+  d.property("overrides", &O::is<&N::overrides>, &O::setIs<&N::overrides>)
+      .doc("All contacts have the three numbers below in place of their own.");
+  d.property("overrideMargin", &O::get<&N::overrideMargin>, &O::set<&N::overrideMargin>)
+      .unit("m")
+      .doc("Distance at which contacts begin.");
+  d.property("overrideSolref", &O::get<&N::overrideSolref>, &O::set<&N::overrideSolref>)
+      .doc("Time constant [s] and damping ratio of contacts.");
+  d.property("overrideSolimp", &O::get<&N::overrideSolimp>, &O::set<&N::overrideSolimp>).doc("Impedance of contacts.");
   d.property("wind", &O::get<&N::wind>, &O::set<&N::wind>).unit("m/s").doc("Velocity of the medium, world frame.");
 }
 

@@ -20,6 +20,8 @@ struct SurfaceNumbers {
   std::array<double, 2> solref{0.02, 1};                   ///< time constant [s], damping ratio
   std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance: from, to, width [m], midpoint, power
   double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
+  double solmix = 1;           ///< weight of solref and solimp against those of another surface
+  std::array<double, 3> ellipsoid{0, 0, 0};  ///< half axes, where a convex shape is an ellipsoid [m]; 0: it is none
 };
 
 /// An axis of a joint (MuJoCo's documentation, "joint"): time constant [s] and damping ratio, and impedance, of the
@@ -34,7 +36,7 @@ struct AxisNumbers {
 /// The world (MuJoCo's documentation, "option").
 struct OptionNumbers {
   static constexpr std::string_view kKind = "MujocoOptions";
-  static constexpr std::array kIntegrators{"Euler", "implicit"}, kCones{"pyramidal", "elliptic"};
+  static constexpr std::array kIntegrators{"Euler", "implicit", "RK4"}, kCones{"pyramidal", "elliptic"};
   static constexpr std::array kSolvers{"Newton", "PGS", "CG"};
   std::int64_t integrator = 0, cone = 0, solver = 0;  ///< indices of these names
   std::int64_t iterations = 100;                      ///< most of the solver
@@ -43,6 +45,16 @@ struct OptionNumbers {
   double density = 0;                                 ///< of the medium [kg/m^3]
   double viscosity = 0;                               ///< of the medium [Pa s]
   std::array<double, 3> wind{0, 0, 0};                ///< velocity of the medium [m/s]
+  std::int64_t noslipIterations = 0;                  ///< of the solver that takes back slip
+  double noslipTolerance = 1e-6;                      ///< at which it stops
+  std::int64_t mprIterations = 50;                    ///< most of the collision of convex shapes
+  double mprTolerance = 1e-6;                         ///< at which it stops
+  std::int64_t refsafe = 1;                           ///< time constants are at least two steps
+  std::int64_t multiccd = 0;                          ///< convex shapes touch in several points
+  std::int64_t overrides = 0;                         ///< all contacts have these numbers:
+  double overrideMargin = 0;                          ///< m
+  std::array<double, 2> overrideSolref{0.02, 1};
+  std::array<double, 5> overrideSolimp{0.9, 0.95, 0.001, 0.5, 2};
 };
 
 }  // namespace mujoco
@@ -87,6 +99,14 @@ class MujocoOptions : public engine::Extension<mujoco::OptionNumbers> {
   }
   template <auto Member, auto& Names>
   void setName(const std::string& name);
+  template <auto Member>
+  bool is() const {
+    return numbers().*Member != 0;
+  }
+  template <auto Member>
+  void setIs(bool on) {
+    set<Member>(on);
+  }
 };
 
 }  // namespace spark

@@ -74,13 +74,14 @@ void MujocoSolver::compile(const engine::Model& model, const engine::State& stat
 
 void MujocoSolver::build(const engine::Model& model, const engine::State& state) {
   abandon();
-  world_.reset();
+  const std::unique_ptr<MujocoWorld> before = std::move(world_);
   Trees trees(model, state);
   const Constraints constraints(model, trees);
   reportSkipped(constraints);
   const std::string text = toMjcf(model, trees, step_, sizes_, constraints);
   try {
     begin(model, std::move(trees), compileWorld(text));
+    if (before) world_->takeActivations(*before);
     poses_ = posesOf(state);
   } catch (const Error& e) {
     refuse(e.what());
@@ -99,8 +100,10 @@ void MujocoSolver::reportSkipped(const Constraints& constraints) {
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
   // The system takes back the memory of a large world in milliseconds: in another thread.
+  auto world = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
+  if (world_) world->takeActivations(*world_);
   if (world_) ending_ = std::async(std::launch::async, [old = std::move(world_)]() mutable { old.reset(); });
-  world_ = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
+  world_ = std::move(world);
   world_->setFilter(filter_);
   ++engine_.compilations_;
 }

@@ -115,8 +115,13 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
   }
   if (hasActuators(model)) {
     actuators_.assign(static_cast<std::size_t>(m_->njnt), -1);
-    for (int i = 0; i < m_->nu; ++i) actuators_[static_cast<std::size_t>(m_->actuator_trnid[2 * i])] = i;
+    // The first ones are those of coordinates.
+    for (int i = 0; i < m_->nu && m_->names[m_->name_actuatoradr[i]] == 'j'; ++i)
+      actuators_[static_cast<std::size_t>(m_->actuator_trnid[2 * i])] = i;
   }
+  for (const auto& [number, n] : model.extensions.world.all<ActuatorNumbers>(kConstraintNumbers))
+    if (const int i = mj_name2id(m_.get(), mjOBJ_ACTUATOR, actuatorName(number).c_str()); i >= 0)
+      inputs_.emplace_back(engine::Block::kindOf<ActuatorNumbers>(number), i);
   geoms_.assign(m_->ngeom, 0);
   for (Index i = 0; i < model.geoms.size(); ++i)
     if (const int geom = id(compiled.geoms, geomName(i)); geom >= 0) {
@@ -171,7 +176,22 @@ void MujocoWorld::bind(const Model& model) {
     if (geom == kNone || (model.geoms[geom].body != kNone && bodyId_[model.geoms[geom].body] < 0)) continue;
     geomOf_[i] = geom;
   }
+  chosen_.clear();
+  for (const auto& [number, n] : model.extensions.world.all<PairNumbers>(kConstraintNumbers)) {
+    const Index first = engine::indexOf(model.geoms, n.first), second = engine::indexOf(model.geoms, n.second);
+    if (n.first != 0 && n.second != 0 && first != kNone && second != kNone) chosen_.push_back(pairOf(first, second));
+  }
+  std::sort(chosen_.begin(), chosen_.end());
   prepared_ = false;
+}
+
+void MujocoWorld::takeActivations(const MujocoWorld& before) {
+  // The actuators with an activation are MuJoCo's last ones.
+  const auto at = [](const mjModel& m, int actuator) { return actuator - (m.nu - m.na); };
+  for (const auto& [kind, actuator] : inputs_)
+    for (const auto& [old, from] : before.inputs_)
+      if (old == kind && at(*m_, actuator) >= 0 && at(*before.m_, from) >= 0)
+        d_->act[at(*m_, actuator)] = before.d_->act[at(*before.m_, from)];
 }
 
 void MujocoWorld::bindMotors(const Joint& j, Index joint, const std::array<int, 3>& mujocoJoints) {
@@ -362,13 +382,18 @@ bool MujocoWorld::run(engine::Step& step) {
     return d_->warning[mjWARN_BADQPOS].number + d_->warning[mjWARN_BADQVEL].number + d_->warning[mjWARN_BADQACC].number;
   };
   if (passMotors(step.state)) prepareAgain(step.model);
-  releaseUnsolved(step.contacts);
-  const Session session(message_, m_.get(), mayTouch, this);
-  passSpeeds(step.state);
-  applyForces(step.model, step.state);
-  applyControls(step.state);
-  mj_step2(m_.get(), d_.get());
-  readContactForces(step.contacts);
+  findUnsolved(step.contacts);
+  model_ = &step.model, state_ = &step.state;
+  const bool stages = m_->opt.integrator == mjINT_RK4;
+  const Session session(message_, m_.get(), mayTouch, this, stages ? onStage : nullptr);
+  passInputs(step.state);
+  act();
+  if (stages) {
+    integrate(step);
+  } else {
+    mj_step2(m_.get(), d_.get());
+    readContactForces(step.contacts);
+  }
   if (bad() > 0) return false;
   // Places and velocities of the bodies; the next detect() finds contacts.
   mj_kinematics(m_.get(), d_.get());
@@ -376,6 +401,28 @@ bool MujocoWorld::run(engine::Step& step) {
   mj_comVel(m_.get(), d_.get());
   prepared_ = false;
   return true;
+}
+
+void MujocoWorld::act() {
+  releaseUnsolved();
+  passSpeeds(*state_);
+  applyForces(*model_, *state_);
+  applyControls(*state_);
+}
+
+void MujocoWorld::onStage(void* world) {
+  auto& w = *static_cast<MujocoWorld*>(world);
+  w.findSpare();
+  w.act();
+}
+
+void MujocoWorld::integrate(engine::Step& step) {
+  mj_fwdActuation(m_.get(), d_.get());
+  mj_fwdAcceleration(m_.get(), d_.get());
+  mj_fwdConstraint(m_.get(), d_.get());
+  mj_checkAcc(m_.get(), d_.get());
+  readContactForces(step.contacts);
+  mj_RungeKutta(m_.get(), d_.get(), 4);
 }
 
 void MujocoWorld::stopBadTree(State& state, std::vector<Index>& stopped) {
@@ -427,10 +474,11 @@ void MujocoWorld::forEachNumber(F f) const {
   for (int i = 0; i < m_->nv; ++i) f(d_->qvel[i]);
   for (int i = 0; i < m_->nv; ++i) f(d_->qacc_warmstart[i]);
   for (int i = 0; i < m_->nv; ++i) f(m_->dof_frictionloss[i]);
+  for (int i = 0; i < m_->na; ++i) f(d_->act[i]);
 }
 
 void MujocoWorld::save(const State& state, StateWriter& out) const {
-  out.write(std::int64_t{m_->nq} + 3 * m_->nv);
+  out.write(std::int64_t{m_->nq} + 3 * m_->nv + m_->na);
   forEachNumber([&out](const mjtNum& v) { out.write(v); });
   out.write(static_cast<std::int64_t>(trees_.links.size()));
   for (Index i = 0; i < trees_.links.size(); ++i) {
@@ -447,7 +495,7 @@ MujocoWorld::Saved::Saved(StateReader& in) {
 }
 
 void MujocoWorld::resume(const Saved& saved, const State& state) {
-  if (saved.numbers.size() != static_cast<std::size_t>(m_->nq) + 3 * static_cast<std::size_t>(m_->nv) ||
+  if (saved.numbers.size() != static_cast<std::size_t>(m_->nq + 3 * m_->nv + m_->na) ||
       saved.taken.size() != trees_.links.size() || state.loaded.size() != state.bodies.size())
     throw Error(fmt::format("expected the saved state of {} coordinates and {} bodies, found {} numbers and {} bodies",
                             m_->nq, trees_.links.size(), saved.numbers.size(), saved.taken.size()));

@@ -55,6 +55,8 @@ class MujocoWorld {
   void resume(const Saved& saved, const engine::State& state);
 
   const Trees& trees() const { return trees_; }
+  /// Takes over the activations of actuators from the world before.
+  void takeActivations(const MujocoWorld& before);
   /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
   bool isFull() const;
   /// MuJoCo's last warning since the last call; "": none.
@@ -102,6 +104,13 @@ class MujocoWorld {
   void applyControls(const engine::State& state);
   /// Writes the controllers' numbers to the actuators.
   void passControls(const engine::State& state);
+  /// The controls of actuators.
+  void passInputs(const engine::State& state);
+  /// All that acts in one stage of a step.
+  void act();
+  /// Integrates by Runge and Kutta's method of fourth order.
+  void integrate(engine::Step& step);
+  static void onStage(void* world);
   /// Steps from the present coordinates. Returns false when MuJoCo met numbers that are too large or
   /// none; all coordinates are to be reset then.
   bool run(engine::Step& step);
@@ -112,8 +121,9 @@ class MujocoWorld {
   /// The same for the contacts of one pair, of which there are more.
   void thinOut(std::span<const std::pair<std::uint64_t, int>> pair);
   bool isSpare(int contact) const { return !spare_.empty() && spare_[static_cast<std::size_t>(contact)]; }
-  /// Takes the force of contacts that are not to be solved.
-  void releaseUnsolved(std::span<const engine::Contact> contacts);
+  /// Lists the pairs whose contacts are not to be solved, and takes their force.
+  void findUnsolved(std::span<const engine::Contact> contacts);
+  void releaseUnsolved();
   void readContactForces(std::span<engine::Contact> contacts) const;
   static bool mayTouch(void* world, int geom1, int geom2);
   void bindMotors(const engine::Joint& j, Index joint, const std::array<int, 3>& mujocoJoints);
@@ -161,7 +171,11 @@ class MujocoWorld {
   std::vector<int> listed_;             ///< MuJoCo's contacts, in the order of the last detect()
   engine::PairFilter filter_ = nullptr;
   const engine::Model* model_ = nullptr;  ///< while MuJoCo runs
-  std::string message_;                   ///< MuJoCo's last one
+  const engine::State* state_ = nullptr;  ///< while it steps
+  /// MuJoCo's actuators that have an input in the state, by the kind of their block.
+  std::vector<std::pair<std::uint64_t, int>> inputs_;
+  std::vector<std::uint64_t> chosen_;  ///< pairs of geoms with a surface of their own, sorted
+  std::string message_;                ///< MuJoCo's last one
 };
 
 }  // namespace spark::mujoco

@@ -18,51 +18,76 @@ std::optional<Actuator> ActuatorReader::read(const Element& e) {
   Actuator x;
   x.from = e;
   x.name = e.node.attribute("name").value();
-  // The coordinate of a hinge or slider is the same in both frames.
-  for (const char* const target : {"joint", "jointinparent"})
-    if (x.joint.empty()) x.joint = e.node.attribute(target).value();
+  readTarget(e, x);
   std::vector<Element> chain{e};
   defaults_.forEach(e, kTags, e.node.attribute("class").value(), [&](const Element& d) { chain.push_back(d); });
   // The outermost default comes first, since later elements override.
   Functions f;
   for (std::size_t i = chain.size(); i-- > 0;) apply(chain[i], f);
   std::string refused = refusal(e, f);
-  if (refused.empty() && x.joint.empty())
-    refused = fmt::format("{} does not act on a joint, which is not supported", e.named());
+  if (refused.empty() && x.engine.target.empty())
+    refused = fmt::format("{} acts on nothing: it is left out", e.named());
   if (!refused.empty()) {
     unsupported_.add(e, refused);
     return std::nullopt;
   }
   // Limits count once all defaults are applied.
-  x.gear = f.gear;
+  x.gear = f.gear[0];
   const bool affine = f.gainType == "affine";
   x.gain = {f.gain[0], affine ? f.gain[1] : 0, affine ? f.gain[2] : 0};
   if (f.biasType == "affine") x.bias = {f.bias[0], f.bias[1], f.bias[2]};
+  Actuator::Engine& n = x.engine;
+  n.gear = f.gear, n.crankLength = f.crankLength, n.lengthRange = f.lengthRange;
+  n.dynamics = f.dynamics == "filterexact" ? "filter" : f.dynamics, n.gainType = f.gainType, n.biasType = f.biasType;
+  n.dynamicsNumbers = f.dynamicsNumbers, n.gain = f.gain, n.bias = f.bias;
+  if (f.dynamics == "filterexact")
+    unsupported_.add(e, fmt::format("{} has the dyntype filterexact: 'filter' is used in its place", e.named()));
+  if (const auto range = compiler_.limit(e, "actrange", f.activation)) n.activationRange = *range;
   if (const auto range = compiler_.limit(e, "ctrlrange", f.control)) x.controlRange = *range;
   if (const auto range = compiler_.limit(e, "forcerange", f.force)) x.forceRange = *range;
   return x;
 }
 
+/// What it acts on: of the attributes that say so the first one counts.
+void ActuatorReader::readTarget(const Element& e, Actuator& x) const {
+  const auto value = [&](const char* name) { return std::string(e.node.attribute(name).value()); };
+  for (const auto& [attribute, type] :
+       {std::pair{"joint", "joint"}, std::pair{"jointinparent", "jointinparent"}, std::pair{"tendon", "tendon"},
+        std::pair{"site", "site"}, std::pair{"cranksite", "slidercrank"}, std::pair{"body", "body"}}) {
+    if (value(attribute).empty()) continue;
+    x.engine.type = type;
+    x.engine.target = value(attribute);
+    break;
+  }
+  // The coordinate of a hinge or slider is the same in both frames.
+  if (x.engine.type == "joint" || x.engine.type == "jointinparent") x.joint = x.engine.target;
+  x.engine.reference = value(x.engine.type == "site" ? "refsite" : "slidersite");
+}
+
 std::string ActuatorReader::refusal(const Element& e, const Functions& f) const {
-  for (const std::string_view tag : {"intvelocity", "cylinder", "muscle", "adhesion", "plugin"})
-    if (e.tag() == tag) return fmt::format("the actuator {} is not supported", e.named());
-  if (f.dynamics != "none")
+  if (e.tag() == "plugin" || std::find(std::begin(kTags), std::end(kTags), e.tag()) == std::end(kTags))
+    return fmt::format("the actuator {} is not supported", e.named());
+  const auto among = [](const std::string& word, std::initializer_list<const char*> words) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  if (!among(f.dynamics, {"none", "integrator", "filter", "filterexact", "muscle"}))
     return fmt::format("{} has the dyntype '{}', which is not supported", e.named(), f.dynamics);
-  for (const std::string& type : {f.gainType, f.biasType})
-    if (type == "muscle" || type == "user")
-      return fmt::format("{} is of the type '{}', which is not supported", e.named(), type);
+  if (!among(f.gainType, {"fixed", "affine", "muscle"}) || !among(f.biasType, {"none", "affine", "muscle"}))
+    return fmt::format("{} has the gaintype '{}' and the biastype '{}', which are not supported", e.named(), f.gainType,
+                       f.biasType);
   return "";
 }
 
 void ActuatorReader::apply(const Element& e, Functions& f) {
   Attributes a(e, unsupported_);
-  std::array<double, 6> gear{f.gear, 0, 0, 0, 0, 0};
-  a.fill("gear", gear);
-  f.gear = gear[0];
+  a.fill("gear", f.gear);
   f.control.read(a, "ctrllimited", "ctrlrange");
   f.force.read(a, "forcelimited", "forcerange");
+  f.activation.read(a, "actlimited", "actrange");
+  a.take("lengthrange", f.lengthRange);
+  f.crankLength = a.number("cranklength", f.crankLength);
   a.ignore({"name", "class", "joint", "group", "user", "tendon", "site", "body", "jointinparent", "cranksite",
-            "slidersite", "lengthrange"});
+            "slidersite", "refsite"});
   if (applyLaw(a, f)) a.finish();
 }
 
@@ -89,8 +114,27 @@ bool ActuatorReader::applyLaw(Attributes& a, Functions& f) {
     types("affine", "none", "none");
   } else if (tag == "general") {
     applyGeneral(a, f);
+  } else if (tag == "intvelocity") {  // the target moves with the control
+    f.gain = {a.number("kp", f.gain[0])};
+    f.bias = {0, -f.gain[0]};
+    f.activation.word = "true";
+    types("fixed", "affine", "integrator");
+  } else if (tag == "cylinder") {
+    f.dynamicsNumbers = {a.number("timeconst", f.dynamicsNumbers[0])};
+    f.gain = {a.number("area", f.gain[0])};
+    if (const double d = a.number("diameter", 0); d > 0) f.gain[0] = kPi / 4 * d * d;
+    std::array<double, 3> bias{f.bias[0], f.bias[1], f.bias[2]};
+    a.fill("bias", bias);
+    f.bias = {bias[0], bias[1], bias[2]};
+    types("fixed", "affine", "filter");
+  } else if (tag == "muscle") {
+    applyMuscle(a, f);
+    types("muscle", "muscle", "muscle");
+  } else if (tag == "adhesion") {
+    f.gain = {a.number("gain", f.gain[0])};
+    f.control.word = "true";
+    types("fixed", "none", "none");
   } else {
-    types("fixed", "affine", tag == "intvelocity" ? "integrator" : tag == "cylinder" ? "filter" : "none");
     return false;
   }
   return true;
@@ -99,10 +143,27 @@ bool ActuatorReader::applyLaw(Attributes& a, Functions& f) {
 void ActuatorReader::applyGeneral(Attributes& a, Functions& f) {
   a.fill("gainprm", f.gain);
   a.fill("biasprm", f.bias);
-  f.gainType = a.word("gaintype", {"fixed", "affine", "muscle", "user"}, f.gainType.c_str());
-  f.biasType = a.word("biastype", {"none", "affine", "muscle", "user"}, f.biasType.c_str());
+  f.gainType = a.word("gaintype", {"fixed", "affine", "muscle", "user", "dcmotor"}, f.gainType.c_str());
+  f.biasType = a.word("biastype", {"none", "affine", "muscle", "user", "dcmotor"}, f.biasType.c_str());
   f.dynamics = a.text("dyntype", f.dynamics.c_str());
-  a.ignore({"dynprm", "actlimited", "actrange"});
+  a.fill("dynprm", f.dynamicsNumbers);
+}
+
+/// What it does not name is that of MuJoCo's muscles, where it is still that of all actuators.
+void ActuatorReader::applyMuscle(Attributes& a, Functions& f) {
+  constexpr std::array<double, 9> kMuscle{0.75, 1.05, -1, 200, 0.5, 1.6, 1.5, 1.3, 1.2};
+  constexpr std::array<const char*, 7> kNames{"force", "scale", "lmin", "lmax", "vmax", "fpmax", "fvmax"};
+  for (std::size_t i = 0; i < kMuscle.size(); ++i)
+    if (f.gain[i] == (i == 0 ? 1 : 0)) f.gain[i] = kMuscle[i];
+  std::array<double, 2> time{f.dynamicsNumbers[0] == 1 ? 0.01 : f.dynamicsNumbers[0],
+                             f.dynamicsNumbers[1] == 0 ? 0.04 : f.dynamicsNumbers[1]},
+      range{f.gain[0], f.gain[1]};
+  a.fill("timeconst", time);
+  a.fill("range", range);
+  f.dynamicsNumbers[0] = time[0], f.dynamicsNumbers[1] = time[1];
+  f.gain[0] = range[0], f.gain[1] = range[1];
+  for (std::size_t i = 0; i < kNames.size(); ++i) f.gain[i + 2] = a.number(kNames[i], f.gain[i + 2]);
+  f.bias = f.gain;
 }
 
 }  // namespace spark::mjcf

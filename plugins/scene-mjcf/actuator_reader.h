@@ -18,16 +18,20 @@ class ActuatorReader {
  private:
   /// The functions and limits of an actuator, as its chain of elements leaves them.
   struct Functions {
-    double gear = 1;
-    std::array<double, 10> gain{1}, bias{};
+    std::array<double, 6> gear{1, 0, 0, 0, 0, 0};
+    std::array<double, 10> gain{1}, bias{}, dynamicsNumbers{1};
     std::string gainType = "fixed", biasType = "none", dynamics = "none";
-    Limit control, force;
+    Limit control, force, activation;
+    std::array<double, 2> lengthRange{};
+    double crankLength = 0;
   };
   void apply(const Element& e, Functions& f);
   /// Why the actuator of an element is not supported; "" if it is.
   std::string refusal(const Element& e, const Functions& f) const;
+  void readTarget(const Element& e, Actuator& x) const;
   bool applyLaw(Attributes& a, Functions& f);
   void applyGeneral(Attributes& a, Functions& f);
+  static void applyMuscle(Attributes& a, Functions& f);
 
   const Compiler& compiler_;
   const Defaults& defaults_;

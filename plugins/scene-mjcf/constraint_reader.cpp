@@ -10,22 +10,23 @@ Attributes ConstraintReader::attributes(const Element& e, const char* tag) {
 }
 
 void ConstraintReader::equality(const Element& e, Model& model) {
-  if (e.tag() != "connect" && e.tag() != "weld" && e.tag() != "joint") return unsupported_.element(e);
+  if (e.tag() != "connect" && e.tag() != "weld" && e.tag() != "joint" && e.tag() != "tendon")
+    return unsupported_.element(e);
   Attributes a = attributes(e, "equality");
   Equality x;
   x.from = e;
   x.type = e.tag();
   x.name = a.text("name");
-  const bool joints = x.type == "joint";
-  x.first = a.text(joints ? "joint1" : "body1");
-  x.second = a.text(joints ? "joint2" : "body2");
+  const bool tendons = x.type == "tendon", joints = x.type == "joint" || tendons;
+  x.first = a.text(tendons ? "tendon1" : joints ? "joint1" : "body1");
+  x.second = a.text(tendons ? "tendon2" : joints ? "joint2" : "body2");
   if (x.first.empty()) {
     if (a.has("site1") || a.has("site2")) {
       unsupported_.add(e, "an equality between sites is not supported");
       a.ignore({"site1", "site2"});
       return;
     }
-    throw e.error(fmt::format("expected an attribute '{}'", joints ? "joint1" : "body1"));
+    throw e.error(fmt::format("expected an attribute '{}'", tendons ? "tendon1" : joints ? "joint1" : "body1"));
   }
   if (!joints && x.second.empty()) x.second = "world";
   if (x.first == x.second) throw e.error(fmt::format("expected two different elements, found '{}' twice", x.first));
@@ -66,16 +67,28 @@ void ConstraintReader::tendon(const Element& e, const std::vector<Element>& part
   a.ignore({"group", "width", "material", "rgba", "user"});
   a.finish();
   for (const Element& part : parts) {
-    if (part.tag() != (t.spatial ? "site" : "joint")) {
-      unsupported_.add(part, fmt::format("a tendon along <{}> is not supported: it is left out", part.tag()));
+    using Kind = TendonPart::Kind;
+    const std::string_view tag = part.tag();
+    const bool known = t.spatial ? tag == "site" || tag == "geom" || tag == "pulley" : tag == "joint";
+    if (!known) {
+      unsupported_.add(part, fmt::format("a tendon along <{}> is not supported: it is left out", tag));
+      model.skippedTendons.insert(t.name);
       return;
     }
     Attributes own(part, unsupported_);
-    if (!t.spatial && !own.has("coef")) throw part.error("expected an attribute 'coef'");
-    t.parts.push_back({part, own.text(t.spatial ? "site" : "joint"), t.spatial ? 0 : own.number("coef", 1)});
+    TendonPart p{part, "", 1, Kind::joint, ""};
+    p.kind = tag == "site" ? Kind::site : tag == "geom" ? Kind::geom : tag == "pulley" ? Kind::pulley : Kind::joint;
+    const char* const number = p.kind == Kind::joint ? "coef" : p.kind == Kind::pulley ? "divisor" : nullptr;
+    if (number && !own.has(number)) throw part.error(fmt::format("expected an attribute '{}'", number));
+    if (number) p.coefficient = own.number(number, 1);
+    if (p.kind == Kind::pulley && !(p.coefficient > 0)) throw part.error("expected a divisor above 0");
+    if (p.kind != Kind::pulley)
+      p.name = own.text(part.tag() == "site" ? "site" : part.tag() == "geom" ? "geom" : "joint");
+    if (p.kind == Kind::geom) p.side = own.text("sidesite");
     own.finish();
-    if (t.spatial && t.parts.size() > 1 && t.parts.back().name == t.parts[t.parts.size() - 2].name)
-      throw part.error(fmt::format("expected another site than the one before, found '{}' again", t.parts.back().name));
+    if (p.kind == Kind::site && !t.parts.empty() && t.parts.back().kind == Kind::site && t.parts.back().name == p.name)
+      throw part.error(fmt::format("expected another site than the one before, found '{}' again", p.name));
+    t.parts.push_back(std::move(p));
   }
   if (t.parts.size() < (t.spatial ? 2u : 1u))
     throw e.error(t.spatial ? "expected at least two sites in a tendon" : "expected at least one joint in a tendon");

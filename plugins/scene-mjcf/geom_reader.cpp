@@ -12,6 +12,35 @@ using engine::ShapeDescription;
 /// A group that is not shown.
 constexpr int kHidden = 5;
 
+/// Points on an ellipsoid with these half axes: 12 rings of 24 and both poles, and the triangles between them.
+engine::Mesh ellipsoidMesh(const Vec3& half) {
+  constexpr int kRings = 12, kAround = 24;
+  engine::Mesh mesh;
+  const auto add = [&](double height, double angle) {
+    const double r = std::sin(height);
+    for (const double v : {half.x() * r * std::cos(angle), half.y() * r * std::sin(angle), half.z() * std::cos(height)})
+      mesh.vertices.push_back(v);
+  };
+  for (int i = 1; i <= kRings; ++i)
+    for (int k = 0; k < kAround; ++k) add(kPi * i / (kRings + 1), 2 * kPi * k / kAround);
+  add(0, 0);
+  add(kPi, 0);
+  const auto at = [](int ring, int k) { return static_cast<std::uint32_t>(ring * kAround + k % kAround); };
+  constexpr std::uint32_t kTop = kRings * kAround, kBottom = kTop + 1;
+  const auto triangle = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh.triangles.insert(mesh.triangles.end(), {a, b, c});
+  };
+  for (int k = 0; k < kAround; ++k) {
+    triangle(kTop, at(0, k), at(0, k + 1));
+    triangle(kBottom, at(kRings - 1, k + 1), at(kRings - 1, k));
+    for (int i = 0; i + 1 < kRings; ++i) {
+      triangle(at(i, k), at(i + 1, k), at(i, k + 1));
+      triangle(at(i, k + 1), at(i + 1, k), at(i + 1, k + 1));
+    }
+  }
+  return mesh;
+}
+
 std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose& frame) {
   Geom g;
   g.from = a.element();
@@ -50,10 +79,10 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
     if (own.mass > 0) g.mass = moved(own, g.pose);
   }
   if (ellipsoid) {
-    // Only its mass counts: nothing collides with it, and no viewer shows it.
-    unsupported_.add(g.from, "the shape of an ellipsoid is not supported");
-    g.isShape = false;
-    g.contactTypes = g.contactAffinities = 0;
+    // Engines other than MuJoCo have it as the hull of points on it, and no viewer shows it.
+    g.ellipsoid = g.shape.lengths / 2;
+    g.shape.shape = Shape::convex;
+    g.shape.mesh = std::make_shared<engine::Mesh>(ellipsoidMesh(g.ellipsoid));
     g.group = kHidden;
   }
   a.finish();
@@ -87,6 +116,7 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
   a.fill("solimp", m.solimp);
   m.margin = a.number("margin", 0);
   m.gap = a.number("gap", 0);
+  m.solmix = a.number("solmix", 1);
 }
 
 /// Reads pose and shape.

@@ -32,12 +32,26 @@ void readOption(Attributes& a, Model& model, Unsupported& unsupported) {
   if (a.has("solver")) set("solver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
   if (a.has("integrator")) {
     const std::string wanted = a.word("integrator", {"Euler", "RK4", "implicit", "implicitfast"}, "");
-    const std::string taken = wanted == "RK4" ? "Euler" : wanted == "implicitfast" ? "implicit" : wanted;
+    const std::string taken = wanted == "implicitfast" ? "implicit" : wanted;
     if (wanted != taken)
       unsupported.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
     set("integrator", taken);
   }
-  a.ignore({"jacobian"});
+  if (a.has("noslip_iterations")) set("noslipIterations", std::max(0, a.integer("noslip_iterations", 0)));
+  if (a.has("mpr_iterations")) set("mprIterations", std::max(1, a.integer("mpr_iterations", 50)));
+  if (a.has("noslip_tolerance")) set("noslipTolerance", a.number("noslip_tolerance", 0));
+  if (a.has("mpr_tolerance")) set("mprTolerance", a.number("mpr_tolerance", 0));
+  if (a.has("o_margin")) set("overrideMargin", a.number("o_margin", 0));
+  const auto numbers = [&](const char* name, const char* property, auto values) {
+    if (!a.has(name)) return;
+    a.fill(name, values);
+    set(property, List(values.begin(), values.end()));
+  };
+  numbers("o_solref", "overrideSolref", std::array{0.02, 1.0});
+  numbers("o_solimp", "overrideSolimp", std::array{0.9, 0.95, 0.001, 0.5, 2.0});
+  const std::string collision = a.word("collision", {"all", "predefined", "dynamic"}, "all");
+  if (a.has("collision")) model.collision = collision;
+  a.ignore({"jacobian", "apirate", "magnetic"});
   a.finish();
 }
 
@@ -65,9 +79,11 @@ void readFlags(Attributes& a, Model& model, Unsupported& unsupported) {
     if (is) unsupported.add(e, fmt::format("the flag {}=\"{}\" is not supported", name, value));
   };
   if (!on("filterparent")) set("joinedCollide", true);
-  for (const char* const name : {"refsafe", "nativeccd", "eulerdamp", "midphase"}) refuse(name, !on(name), "disable");
-  for (const char* const name : {"override", "multiccd", "invdiscrete", "island"})
-    refuse(name, on(name, "disable"), "enable");
+  if (!on("refsafe")) set("refsafe", false, true);
+  if (on("override", "disable")) set("overrides", true, true);
+  if (on("multiccd", "disable")) set("multiccd", true, true);
+  for (const char* const name : {"nativeccd", "eulerdamp", "midphase"}) refuse(name, !on(name), "disable");
+  for (const char* const name : {"invdiscrete", "island"}) refuse(name, on(name, "disable"), "enable");
   // Without effect here: there is nothing that they switch, or results are the same.
   a.ignore({"warmstart", "sensor", "energy", "fwdinv", "autoreset"});
   a.finish();

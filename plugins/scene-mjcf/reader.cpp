@@ -8,6 +8,7 @@
 #include "api/mass.h"
 #include "option_reader.h"
 #include "spring_damper.h"
+#include "vocabulary.h"
 
 namespace spark::mjcf {
 
@@ -54,7 +55,16 @@ Model Reader::read() {
     if (std::find(std::begin(kSections), std::end(kSections), e.tag()) == std::end(kSections) &&
         !kNotSimulated.contains(e.tag()))
       unsupported_.element(e);
+  chooseCollisions();
+  nameUnknown(document_, unsupported_);
   return std::move(model_);
+}
+
+void Reader::chooseCollisions() {
+  if (model_.collision == "dynamic") model_.pairs.clear();
+  if (model_.collision != "predefined") return;
+  for (Body& b : model_.bodies)
+    for (Geom& g : b.geoms) g.contactTypes = g.contactAffinities = 0;
 }
 
 void Reader::section(const Element& e) {
@@ -242,10 +252,16 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   Limit limit, force;
   limit.read(a, "limited", "range");
   force.read(a, "actuatorfrclimited", "actuatorfrcrange");
-  if (j.kind == JointKind::ball || j.kind == JointKind::free) {
-    for (const char* name : {"range", "armature", "frictionloss", "stiffness"})
-      if (a.has(name))
-        unsupported_.add(e, fmt::format("the attribute '{}' of a {} joint is not supported", name, kind));
+  const bool ball = j.kind == JointKind::ball;
+  if (j.kind == JointKind::free) {
+    a.ignore({"pos", "axis", "range", "limited", "ref", "springref"});
+    j.reference = 0;
+  } else if (ball && limit.range && limit.word != "false" && (*limit.range)[1] > 0) {
+    // Only its largest rotation counts.
+    j.limited = true;
+    j.range = {0, inUnits((*limit.range)[1])};
+  } else if (ball) {
+    j.limited = false;
   } else if (const auto range = compiler_.limit(e, "range", limit)) {
     j.limited = true;
     j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
@@ -362,10 +378,21 @@ void Reader::notePairs(const Element& e) {
 void Reader::contact(const Element& e) {
   if (e.tag() != "exclude" && e.tag() != "pair") return unsupported_.element(e);
   Attributes a = attributes(e);
-  if (e.tag() == "exclude")
+  if (e.tag() == "exclude") {
     model_.exclusions.push_back({e, a.text("body1"), a.text("body2")});
-  else
-    model_.pairs.push_back({e, a.text("geom1"), a.text("geom2")});
+  } else {
+    Pair p{e, a.text("geom1"), a.text("geom2")};
+    if (a.has("condim")) p.condim = a.integer("condim", 3);
+    const auto fill = [&](const char* name, auto& numbers, auto usual) {
+      if (a.has(name)) a.fill(name, numbers.emplace(usual));
+    };
+    fill("friction", p.friction, std::array{1.0, 1.0, 0.005, 0.0001, 0.0001});
+    fill("solref", p.solref, std::array{0.02, 1.0});
+    fill("solimp", p.solimp, std::array{0.9, 0.95, 0.001, 0.5, 2.0});
+    if (a.has("margin")) p.margin = a.number("margin", 0);
+    if (a.has("gap")) p.gap = a.number("gap", 0);
+    model_.pairs.push_back(std::move(p));
+  }
   a.ignore({"name"});
   a.finish();
 }

@@ -31,6 +31,8 @@ class Reader {
   /// The attributes of an element, which is counted.
   Attributes attributes(const Element& e, const std::string& childClass = "");
   void section(const Element& e);
+  /// Which geoms may collide, as the option `collision` says.
+  void chooseCollisions();
   void option(const Element& e);
   void asset(const Element& e);
   void content(const Element& parent, const Scope& scope);

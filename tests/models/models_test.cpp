@@ -34,7 +34,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The file to run alone; "": all of this folder.
-const std::string kAlone = std::getenv("SPARK_MODEL") ? std::getenv("SPARK_MODEL") : "";
+const std::string kAlone = std::getenv("SPARK_MODEL")
+                               ? fs::absolute(std::getenv("SPARK_MODEL")).lexically_normal().relative_path().string()
+                               : "";
 const fs::path kFolder = kAlone.empty() ? fs::path(SPARK_SOURCES "/tests/models") : fs::path("/");
 constexpr double kTimes[] = {0.1, 0.5, 1};
 constexpr double kTolerance = 1e-6, kControl = 0.3;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "spark/access.h"
@@ -31,23 +32,102 @@ void ActuatorBuilder::build() {
   // By joint, in the order of the file.
   std::vector<std::pair<std::string, Actuators>> groups;
   for (const Actuator& x : c_.model.actuators) {
+    if (isOfEngine(x)) {
+      makeEngineActuator(x);
+      continue;
+    }
     auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == x.joint; });
     if (found == groups.end()) found = groups.insert(groups.end(), {x.joint, {}});
     found->second.push_back(&x);
   }
-  for (const auto& [name, all] : groups) {
-    const Element& from = all.front()->from;
-    const auto joint = c_.joints.find(name);
-    const bool free = c_.freeJoints.contains(name);
-    if (joint == c_.joints.end() && !free) throw from.error(fmt::format("there is no joint '{}' to act on", name));
-    if (!free && joint->second.joint->kind != JointKind::ball) {
-      onJoint(all, joint->second);
-      continue;
+  for (const auto& [name, all] : groups) onJoint(all, c_.joints.find(name)->second);
+}
+
+/// True for what no controller of a joint can be. Throws Error where it drives a joint that is not there.
+bool ActuatorBuilder::isOfEngine(const Actuator& x) const {
+  if (x.engine.type != "joint" && x.engine.type != "jointinparent") return true;
+  const auto joint = c_.joints.find(x.joint);
+  if (joint == c_.joints.end() && !c_.freeJoints.contains(x.joint))
+    throw x.from.error(fmt::format("there is no joint '{}' to act on", x.joint));
+  return !x.engine.isPlain() || joint == c_.joints.end() || joint->second.joint->kind == JointKind::ball;
+}
+
+void ActuatorBuilder::makeEngineActuator(const Actuator& x) {
+  constexpr const char* kClass = "MujocoActuator";
+  if (!provides(c_.top.kernel(), kClass))
+    return c_.unsupported.add(x.from,
+                              fmt::format("{} needs the plugin physics-mujoco, which is not there", x.from.named()));
+  const Actuator::Engine& n = x.engine;
+  // What it names is looked up first: an error leaves nothing behind.
+  std::vector<std::pair<const char*, Value>> settings;
+  const auto at = [&](const std::string& site, const char* path, const char* point, const char* rotation) {
+    const auto [body, found] = c_.site(site, x.from);
+    const Pose pose = compose(Construction::frameOf(*body), found->pose);
+    const Eigen::Quaterniond q(pose.rotation);
+    settings.insert(
+        settings.end(),
+        {{path, c_.path(*body)}, {point, toList(pose.position)}, {rotation, List{q.w(), q.x(), q.y(), q.z()}}});
+  };
+  double offset = 0;  // MuJoCo's length in the pose of the file, less that here
+  if (n.type == "tendon") {
+    const auto tendon = c_.tendons.find(n.target);
+    if (tendon == c_.tendons.end()) {
+      const auto& skipped = c_.model.skippedTendons;
+      if (!skipped.contains(n.target)) throw x.from.error(fmt::format("there is no tendon '{}'", n.target));
+      return c_.unsupported.add(x.from, fmt::format("{} acts on a tendon that is left out", x.from.named()));
     }
-    for (const Actuator* x : all)
-      c_.unsupported.add(x->from, fmt::format("{} acts on a {} joint, which is not supported", x->from.named(),
-                                              free ? "free" : "ball"));
+    if (!tendon->second) return;
+    settings.emplace_back("target", "../" + tendon->second->name());
+    for (const Tendon& t : c_.model.tendons)
+      if (t.name == n.target && !t.spatial)
+        for (const TendonPart& part : t.parts)
+          offset += n.gear[0] * part.coefficient * c_.joints.find(part.name)->second.joint->reference;
+  } else if (n.type == "site" || n.type == "slidercrank") {
+    at(n.target, "target", "point", "rotation");
+    if (!n.reference.empty()) {
+      at(n.reference, "reference", "point2", "rotation2");
+      settings.emplace_back("hasReference", true);
+    } else if (n.type == "slidercrank") {
+      throw x.from.error("expected an attribute 'slidersite'");
+    }
+    settings.emplace_back("crankLength", n.crankLength);
+  } else if (n.type == "body") {
+    const PlacedBody& body = c_.bodies.find(n.target, x.from);
+    settings.emplace_back("target", c_.path(body));
+    settings.emplace_back("part", body.part);
+  } else if (const auto free = c_.freeJoints.find(x.joint); free != c_.freeJoints.end()) {
+    settings.emplace_back("target", "../" + free->second->parent()->name() + "/" + free->second->name());
+  } else {
+    const Construction::MadeJoint& joint = c_.joints.find(x.joint)->second;
+    settings.emplace_back("target", "../" + joint.made->leaf().parent()->name() + "/" + joint.made->leaf().name());
+    offset = n.gear[0] * joint.joint->reference;
   }
+  auto gain = n.gain, bias = n.bias;
+  if (n.gainType == "affine") gain[0] += gain[1] * offset;
+  if (n.biasType == "affine") bias[0] += bias[1] * offset;
+  const std::string name = x.name.empty() ? x.joint : x.name;
+  Node& place = c_.transform(c_.top, c_.names.in(c_.top, name, "actuator"), Pose{});
+  Leaf& node = place.create(kClass, "actuator");
+  setProperty(node, "type", n.type);
+  for (const auto& [property, value] : settings) {
+    const bool path = std::string_view(property) == "target" || std::string_view(property) == "reference";
+    setProperty(node, property, path && !value.plain().empty() ? Value("../" + value.plain()) : value);
+  }
+  setProperty(node, "gear", toList(n.gear));
+  setProperty(node, "dynamics", n.dynamics);
+  setProperty(node, "gain", n.gainType);
+  setProperty(node, "bias", n.biasType);
+  setProperty(node, "dynamicsNumbers", toList(n.dynamicsNumbers));
+  setProperty(node, "gainNumbers", toList(gain));
+  setProperty(node, "biasNumbers", toList(bias));
+  const auto range = [&](const char* property, const std::array<double, 2>& r) {
+    if (isLimited(r)) setProperty(node, property, toList(r));
+  };
+  range("controlRange", controlRange(x));
+  range("forceRange", x.forceRange);
+  range("activationRange", n.activationRange);
+  range("lengthRange", {n.lengthRange[0] - offset, n.lengthRange[1] - offset});
+  if (c_.has("EngineActuatorEffector")) makeEffector("EngineActuatorEffector", name, place, x.from);
 }
 
 void ActuatorBuilder::onJoint(const Actuators& all, const Construction::MadeJoint& on) {
@@ -177,7 +257,10 @@ void ActuatorBuilder::makeActuator(const Actuator& x, const Law& law, const Cons
 
 Leaf& ActuatorBuilder::makeEffector(const char* className, const std::string& name, const Construction::MadeJoint& on,
                                     const Element& from) {
-  Node& parent = *on.made->leaf().asNode();
+  return makeEffector(className, name, *on.made->leaf().asNode(), from);
+}
+
+Leaf& ActuatorBuilder::makeEffector(const char* className, const std::string& name, Node& parent, const Element& from) {
   Leaf& effector = parent.create(className, c_.names.unprefixed(parent, name, "actuator"));
   const std::string message = c_.names.effector(name.empty() ? effector.name() : name);
   if (message != effector.name()) setProperty(effector, "messageName", message);

@@ -32,6 +32,10 @@ class ActuatorBuilder {
   void makeController(const Parts& parts, const Construction::MadeJoint& joint);
   std::optional<Law> lawOf(const Actuator& x, const Joint& joint, bool alone);
   void makeActuator(const Actuator& x, const Law& law, const Construction::MadeJoint& joint);
+  bool isOfEngine(const Actuator& x) const;
+  /// A node for an actuator that MuJoCo alone has.
+  void makeEngineActuator(const Actuator& x);
+  Leaf& makeEffector(const char* className, const std::string& name, Node& parent, const Element& from);
   Leaf& makeEffector(const char* className, const std::string& name, const Construction::MadeJoint& joint,
                      const Element& from);
   std::array<double, 2> controlRange(const Actuator& x) const;

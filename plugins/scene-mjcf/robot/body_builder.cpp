@@ -66,7 +66,8 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags
     setProperty(*numbers, "frictionSolimp", toList(n.frictionSolimp));
   }
   // A spring is a law of its own, beside the joint's controller and its limits.
-  if (flags.passive && j.stiffness > 0) callMethod(made.leaf(), "setSpring", List{0, j.stiffness, j.springPosition});
+  if (flags.passive && (j.stiffness > 0 || j.springPosition != 0))
+    callMethod(made.leaf(), "setSpring", List{0, j.stiffness, j.springPosition});
 }
 
 }  // namespace
@@ -112,10 +113,11 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
                          "the flag passive=\"disable\" removes a damping as a whole; MuJoCo 2.2.2 keeps the "
                          "part of its implicit integration");
   if (joints.front().kind == JointKind::free) {
-    c_.freeJoints.insert(joints.front().name);
     Leaf& body = *p.node->child("body");
     setProperty(body, "linearDamping", c_.flags.passive ? joints.front().damping : 0.0);
     setProperty(body, "angularDamping", c_.flags.passive ? joints.front().damping : 0.0);
+    if (!joints.front().name.empty()) c_.freeJoints.emplace(joints.front().name, &body);
+    addFreedom(p, joints.front(), bodyPath(p.node->name()).substr(3));
     return;
   }
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
@@ -143,12 +145,42 @@ void BodyBuilder::makeJoint(const PlacedBody& p, const Joint& j, Node& child, co
     callMethod(made.leaf(), "attach", List{"../body", parent});
     if (j.kind != JointKind::slide) made.setWorldAnchor(p.world.position + p.world.rotation * j.position);
     if (j.kind != JointKind::ball) setAxis(made, j, p.world, c_.flags);
-    if (j.kind == JointKind::ball) made.setParameter(JointParameter::damping, 0, c_.flags.passive ? j.damping : 0);
+    if (j.kind == JointKind::ball) {
+      made.setParameter(JointParameter::damping, 0, c_.flags.passive ? j.damping : 0);
+      addFreedom(p, j, fmt::format("../{}/{}", child.name(), made.leaf().name()));
+    }
     if (!j.name.empty() && !c_.joints.emplace(j.name, Construction::MadeJoint{&j, &made}).second)
       throw Error(fmt::format("there are two joints '{}'", j.name));
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot make the joint '{}'", j.from.where(), j.name), e);
   }
+}
+
+void BodyBuilder::addFreedom(const PlacedBody& p, const Joint& j, const std::string& of) {
+  const double stiffness = c_.flags.passive ? j.stiffness : 0, friction = c_.flags.frictionLoss ? j.dryFriction : 0;
+  const bool limited = j.limited && c_.flags.limit;
+  if (j.armature == 0 && stiffness == 0 && friction == 0 && !limited) return;
+  constexpr const char* kClass = "MujocoFreedom";
+  if (!provides(c_.top.kernel(), kClass))
+    return c_.unsupported.add(j.from,
+                              "armature, friction, spring and limit of a ball or free joint need the plugin "
+                              "physics-mujoco, which is not there");
+  Leaf& node = c_.top.create(kClass, c_.names.in(c_.top, "", "freedom"));
+  const Pose rest = j.kind == JointKind::free ? p.world : compose(inverse(c_.bodies[p.above].world), p.world);
+  const Eigen::Quaterniond q(rest.rotation);
+  setProperty(node, "armature", j.armature);
+  setProperty(node, "frictionLoss", friction);
+  setProperty(node, "stiffness", stiffness);
+  setProperty(node, "restRotation", List{q.w(), q.x(), q.y(), q.z()});
+  setProperty(node, "restPosition", toList(rest.position));
+  setProperty(node, "mostAngle", limited ? j.range[1] : 0.0);
+  const Firmness& n = j.firmness;
+  setProperty(node, "stopSolref", toList(n.stopSolref));
+  setProperty(node, "stopSolimp", toList(n.stopSolimp));
+  setProperty(node, "stopMargin", n.stopMargin);
+  setProperty(node, "frictionSolref", toList(n.frictionSolref));
+  setProperty(node, "frictionSolimp", toList(n.frictionSolimp));
+  setProperty(node, "of", of);
 }
 
 Node& BodyBuilder::transformAt(const std::string& name, const Pose& world) {

@@ -17,6 +17,8 @@ class BodyBuilder {
   void makeBody(PlacedBody& b);
   void compensateGravity(const PlacedBody& b, Leaf& body);
   void makeJoints(const PlacedBody& b);
+  /// What MuJoCo alone has of a ball or a free joint. `of`: path of its node from the transform's parent.
+  void addFreedom(const PlacedBody& body, const Joint& joint, const std::string& of);
   void makeJoint(const PlacedBody& b, const Joint& joint, Node& child, const std::string& parentPath);
   Node& transformAt(const std::string& name, const Pose& world);
 

@@ -10,19 +10,16 @@
 namespace spark::mjcf {
 
 void ConstraintBuilder::build() {
+  // Equalities name tendons.
+  for (const Tendon& t : c_.model.tendons) tendon(t);
   if (c_.flags.equality)
     for (const Equality& x : c_.model.equalities) equality(x);
-  for (const Tendon& t : c_.model.tendons) tendon(t);
 }
 
 Leaf* ConstraintBuilder::make(const Element& from, const char* className, const std::string& name, const char* kind) {
   if (provides(c_.top.kernel(), className)) return &c_.top.create(className, c_.names.in(c_.top, name, kind));
   c_.unsupported.add(from, fmt::format("<{}> needs the plugin physics-mujoco, which is not there", from.tag()));
   return nullptr;
-}
-
-std::string ConstraintBuilder::path(const PlacedBody& body) {
-  return body.carrier == 0 ? "" : "../" + c_.bodies.carrierOf(body).node->name() + "/body";
 }
 
 std::string ConstraintBuilder::pathOf(const Construction::MadeJoint& joint) {
@@ -38,18 +35,21 @@ const Construction::MadeJoint& ConstraintBuilder::jointOf(const std::string& nam
   return found->second;
 }
 
-Pose ConstraintBuilder::frameOf(const PlacedBody& body) { return body.carrier == 0 ? body.world : body.inCarrier; }
-
 void ConstraintBuilder::equality(const Equality& x) {
   // What it names is looked up first: an error leaves nothing behind.
-  const bool joints = x.type == "joint";
+  const bool tendons = x.type == "tendon", joints = x.type == "joint" || tendons;
   std::string first, second;
-  if (joints) {
+  if (tendons) {
+    const Leaf *const a = tendonOf(x.first, x.from), *const b = x.second.empty() ? nullptr : tendonOf(x.second, x.from);
+    if (!a || (!b && !x.second.empty())) return;
+    first = "../" + a->name();
+    if (b) second = "../" + b->name();
+  } else if (joints) {
     first = pathOf(jointOf(x.first, x.from));
     if (!x.second.empty()) second = pathOf(jointOf(x.second, x.from));
   } else {
-    first = path(c_.bodies.find(x.first, x.from));
-    second = path(c_.bodies.find(x.second, x.from));
+    first = c_.path(c_.bodies.find(x.first, x.from));
+    second = c_.path(c_.bodies.find(x.second, x.from));
   }
   Leaf* const node = make(x.from, "MujocoEquality", x.name, "equality");
   if (!node) return;
@@ -68,7 +68,7 @@ void ConstraintBuilder::equality(const Equality& x) {
 /// Points and rotation in the frames of the links that carry the bodies.
 void ConstraintBuilder::place(const Equality& x, Leaf& node) {
   const PlacedBody &first = c_.bodies.find(x.first, x.from), &second = c_.bodies.find(x.second, x.from);
-  const Pose in1 = frameOf(first), in2 = frameOf(second);
+  const Pose in1 = Construction::frameOf(first), in2 = Construction::frameOf(second);
   const auto at = [](const Pose& p, const Vec3& v) { return Vec3(p.position + p.rotation * v); };
   const std::array<double, 7>& r = x.relativePose;
   const Eigen::Quaterniond given(r[3], r[4], r[5], r[6]);
@@ -103,13 +103,24 @@ double ConstraintBuilder::springLength(const Tendon& t) {
     return t.springLength < 0 ? length : t.springLength + length;
   }
   if (t.springLength >= 0) return t.springLength;
+  // MuJoCo finds the way around geoms, and where the springs of joints rest.
+  using Kind = TendonPart::Kind;
+  if (hasShiftedJoint(t) ||
+      !std::all_of(t.parts.begin(), t.parts.end(), [](const auto& p) { return p.kind == Kind::site; }))
+    return -1;
   std::vector<Vec3> points;
   for (const TendonPart& part : t.parts) {
-    const Place place = siteOf(part);
+    const auto place = c_.site(part.name, part.from);
     points.push_back(compose(place.body->world, place.site->pose).position);
   }
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   return length;
+}
+
+const Leaf* ConstraintBuilder::tendonOf(const std::string& name, const Element& user) {
+  const auto found = c_.tendons.find(name);
+  if (found == c_.tendons.end()) throw user.error(fmt::format("there is no tendon '{}'", name));
+  return found->second;
 }
 
 void ConstraintBuilder::tendon(const Tendon& t) {
@@ -117,18 +128,10 @@ void ConstraintBuilder::tendon(const Tendon& t) {
   double offset = 0;  // of lengths that are sums of coordinates
   if (!t.spatial)
     for (const TendonPart& part : t.parts) offset += part.coefficient * jointOf(part.name, part.from).joint->reference;
-  if (t.spatial && t.springLength < 0 && t.stiffness > 0 && hasShiftedJoint(t))
-    c_.unsupported.add(t.from,
-                       fmt::format("the spring of {} rests where the file has the bodies; 'springref' and 'ref' "
-                                   "of joints do not count",
-                                   t.from.named()));
   Leaf* const node = make(t.from, "MujocoTendon", t.name, "tendon");
+  if (!t.name.empty()) c_.tendons.emplace(t.name, node);
   if (!node) return;
-  for (const TendonPart& part : t.parts)
-    if (t.spatial)
-      addSite(part, *node);
-    else
-      callMethod(*node, "addJoint", List{pathOf(jointOf(part.name, part.from)), part.coefficient});
+  for (const TendonPart& part : t.parts) addPart(part, *node);
   setProperty(*node, "stiffness", c_.flags.passive ? t.stiffness : 0);
   setProperty(*node, "damping", c_.flags.passive ? t.damping : 0);
   setProperty(*node, "frictionLoss", c_.flags.frictionLoss ? t.frictionLoss : 0);
@@ -144,7 +147,8 @@ void ConstraintBuilder::tendon(const Tendon& t) {
 
 bool ConstraintBuilder::hasShiftedJoint(const Tendon& t) {
   const auto isAt = [&](const PlacedBody& joined, const TendonPart& part) {
-    int up = static_cast<int>(siteOf(part).body->body - c_.model.bodies.data());
+    const PlacedBody* const own = part.kind == TendonPart::Kind::site ? c_.site(part.name, part.from).body : nullptr;
+    int up = own ? static_cast<int>(own->body - c_.model.bodies.data()) : 0;
     while (up > 0 && &c_.bodies[up] != &joined) up = c_.model.bodies[static_cast<std::size_t>(up)].parent;
     return up > 0;
   };
@@ -156,17 +160,50 @@ bool ConstraintBuilder::hasShiftedJoint(const Tendon& t) {
   });
 }
 
-ConstraintBuilder::Place ConstraintBuilder::siteOf(const TendonPart& part) {
-  for (PlacedBody& b : c_.bodies)
-    for (const Site& s : b.body->sites)
-      if (s.name == part.name && !s.name.empty()) return {&b, &s};
-  throw part.from.error(fmt::format("there is no site '{}'", part.name));
+void ConstraintBuilder::addPart(const TendonPart& part, Leaf& node) {
+  const auto at = [&](const PlacedBody& body, const Pose& pose) { return compose(Construction::frameOf(body), pose); };
+  switch (part.kind) {
+    case TendonPart::Kind::joint:
+      callMethod(node, "addJoint", List{pathOf(jointOf(part.name, part.from)), part.coefficient});
+      break;
+    case TendonPart::Kind::pulley:
+      callMethod(node, "addPulley", List{part.coefficient});
+      break;
+    case TendonPart::Kind::site: {
+      const auto [body, site] = c_.site(part.name, part.from);
+      const Vec3 p = at(*body, site->pose).position;
+      callMethod(node, "addPoint", List{c_.path(*body), p.x(), p.y(), p.z()});
+      break;
+    }
+    case TendonPart::Kind::geom: {
+      const auto [body, geom] = geomOf(part);
+      const Pose pose = at(*body, geom->pose);
+      const Vec3& p = pose.position;
+      const Eigen::Quaterniond q(pose.rotation);
+      if (geom->shape.shape == engine::Shape::sphere)
+        callMethod(node, "addSphere", List{c_.path(*body), p.x(), p.y(), p.z(), geom->shape.radius});
+      else
+        callMethod(node, "addCylinder",
+                   List{c_.path(*body), p.x(), p.y(), p.z(), geom->shape.radius, q.w(), q.x(), q.y(), q.z()});
+      if (part.side.empty()) break;
+      const auto [sideBody, side] = c_.site(part.side, part.from);
+      const Vec3 s = at(*sideBody, side->pose).position;
+      callMethod(node, "setSide", List{c_.path(*sideBody), s.x(), s.y(), s.z()});
+      break;
+    }
+  }
 }
 
-void ConstraintBuilder::addSite(const TendonPart& part, Leaf& node) {
-  const Place place = siteOf(part);
-  const Vec3 p = compose(frameOf(*place.body), place.site->pose).position;
-  callMethod(node, "addPoint", List{path(*place.body), p.x(), p.y(), p.z()});
+std::pair<PlacedBody*, const Geom*> ConstraintBuilder::geomOf(const TendonPart& part) {
+  for (PlacedBody& b : c_.bodies)
+    for (const Geom& g : b.body->geoms) {
+      if (g.name != part.name || g.name.empty()) continue;
+      if (g.shape.shape != engine::Shape::sphere && g.shape.shape != engine::Shape::cylinder)
+        throw part.from.error(
+            fmt::format("expected a sphere or a cylinder that a tendon can go around, found '{}'", part.name));
+      return {&b, &g};
+    }
+  throw part.from.error(fmt::format("there is no geom '{}'", part.name));
 }
 
 }  // namespace spark::mjcf

@@ -1,5 +1,7 @@
 #include "construction.h"
 
+#include <fmt/format.h>
+
 #include "spark/kernel.h"
 #include "spark/plugin_object.h"
 
@@ -36,6 +38,17 @@ Pose Construction::inNode(const PlacedBody& b, const Pose& local) {
   // The origin of a body is its centre of mass.
   const Pose link{-bodies.carrierOf(b).mass.center, Mat3::Identity()};
   return compose(link, compose(b.inCarrier, local));
+}
+
+std::string Construction::path(const PlacedBody& body) {
+  return body.carrier == 0 ? "" : "../" + bodies.carrierOf(body).node->name() + "/body";
+}
+
+Construction::FoundSite Construction::site(const std::string& name, const Element& user) {
+  for (PlacedBody& b : bodies)
+    for (const Site& s : b.body->sites)
+      if (s.name == name && !s.name.empty()) return {&b, &s};
+  throw user.error(fmt::format("there is no site '{}'", name));
 }
 
 bool Construction::has(const char* className) {

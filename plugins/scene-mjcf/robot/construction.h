@@ -21,6 +21,17 @@ struct Construction {
   /// The transform for what belongs to a body, and a pose in that transform: `local` is one in the body.
   Node& nodeOf(const PlacedBody& body);
   Pose inNode(const PlacedBody& body, const Pose& local);
+  /// The path of a body's node as seen from a node below `top`; "": the world.
+  std::string path(const PlacedBody& body);
+  /// The frame of a body in that of the link that carries it, or in the world.
+  static Pose frameOf(const PlacedBody& body) { return body.carrier == 0 ? body.world : body.inCarrier; }
+  /// A site and its body.
+  struct FoundSite {
+    PlacedBody* body;
+    const Site* site;
+  };
+  /// Throws Error, with the place of `user`, where there is none of that name.
+  FoundSite site(const std::string& name, const Element& user);
   /// True when there is such a class of perceptors or effectors.
   bool has(const char* className);
 
@@ -30,7 +41,8 @@ struct Construction {
   Names names;
   PlacedBodies bodies;
   std::map<std::string, MadeJoint, std::less<>> joints{};
-  std::set<std::string, std::less<>> freeJoints{};
+  std::map<std::string, Leaf*, std::less<>> freeJoints{};          ///< by the names of free joints
+  std::map<std::string, const Leaf*, std::less<>> tendons{};       ///< by name
   std::map<std::string, Node*, std::less<>> sites{}, colliders{};  ///< colliders: by the names of geoms
   Flags flags{};              ///< those of the file, unless the model is attached to a world with flags of its own
   bool withoutParts = false;  ///< has() found no class for a sensor or an actuator

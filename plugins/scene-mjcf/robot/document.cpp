@@ -157,6 +157,9 @@ void Defaults::forEach(const Element& user, std::span<const std::string_view> ta
 // ---- what is not supported ----
 
 void Unsupported::add(const Element& e, const std::string& what) {
+  const void* const place =
+      e.node ? static_cast<const void*>(e.node.internal_object()) : e.file->text.data() + e.offset;
+  if (!seen_.emplace(place, what).second) return;
   if (const auto known = known_.find(what); known != known_.end())
     ++entries_[known->second].times;
   else if (entries_.size() == kMaxKinds)

@@ -99,7 +99,7 @@ class Unsupported {
  public:
   void element(const Element& e);
   void attribute(const Element& e, const std::string& name);
-  /// Something else: one sentence per `what`, with the first place.
+  /// Something else: one sentence per `what`, with the first place. The same of one element counts once.
   void add(const Element& e, const std::string& what);
   /// "a.xml:3:4: the element <tendon> is not supported (and 3 more)", in order of the first places.
   std::vector<std::string> sentences() const;
@@ -111,6 +111,7 @@ class Unsupported {
     int times = 0;
   };
   std::vector<Entry> entries_;
+  std::set<std::pair<const void*, std::string>> seen_;     ///< elements and what was said of them
   std::map<std::string, std::size_t, std::less<>> known_;  ///< index in entries_
   int more_ = 0;
 };

@@ -59,7 +59,8 @@ void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
 
 void setContact(Node& collider, const Geom& g) {
   const ContactNumbers& m = g.contact;
-  if (Leaf* const numbers = m == ContactNumbers() ? nullptr : extensionOf(collider, "MujocoSurface")) {
+  const bool isEllipsoid = g.ellipsoid[0] > 0;
+  if (Leaf* const numbers = m == ContactNumbers() && !isEllipsoid ? nullptr : extensionOf(collider, "MujocoSurface")) {
     setProperty(*numbers, "friction", toList(m.friction));
     setProperty(*numbers, "condim", m.condim);
     setProperty(*numbers, "priority", m.priority);
@@ -67,6 +68,8 @@ void setContact(Node& collider, const Geom& g) {
     setProperty(*numbers, "solimp", toList(m.solimp));
     setProperty(*numbers, "margin", m.margin);
     setProperty(*numbers, "gap", m.gap);
+    setProperty(*numbers, "solmix", m.solmix);
+    setProperty(*numbers, "ellipsoid", toList(g.ellipsoid));
   }
   setProperty(collider, "contactTypes", g.contactTypes);
   setProperty(collider, "contactAffinities", g.contactAffinities);
@@ -165,6 +168,29 @@ void GeomBuilder::pair(const Pair& p) {
   if (first == none || second == none)
     throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));
   callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
+  surfaceOf(p, *first->second, *second->second);
+}
+
+void GeomBuilder::surfaceOf(const Pair& p, const Node& first, const Node& second) {
+  if (!provides(c_.top.kernel(), "MujocoPair")) {
+    if (p.condim || p.friction || p.solref || p.solimp || p.margin || p.gap)
+      c_.unsupported.add(p.from, "the surface of a <pair> needs the plugin physics-mujoco, which is not there");
+    return;
+  }
+  Leaf& node = c_.top.create("MujocoPair", c_.names.in(c_.top, "", "pair"));
+  // What a pair does not give has MuJoCo's values for pairs, whatever its geoms have.
+  if (p.condim) setProperty(node, "condim", *p.condim);
+  if (p.friction) setProperty(node, "friction", toList(*p.friction));
+  if (p.solref) setProperty(node, "solref", toList(*p.solref));
+  if (p.solimp) setProperty(node, "solimp", toList(*p.solimp));
+  if (p.margin) setProperty(node, "margin", *p.margin);
+  if (p.gap) setProperty(node, "gap", *p.gap);
+  const auto path = [&](const Node& collider) {
+    return collider.parent() == &c_.top ? "../" + collider.name()
+                                        : "../" + collider.parent()->name() + "/" + collider.name();
+  };
+  setProperty(node, "first", path(first));
+  setProperty(node, "second", path(second));
 }
 
 bool GeomBuilder::inPair(const std::string& geom) const {

@@ -22,6 +22,8 @@ class GeomBuilder {
   void makeSites(const PlacedBody& b);
   void exclude(const Exclusion& x);
   void pair(const Pair& p);
+  /// What MuJoCo alone reads of a pair.
+  void surfaceOf(const Pair& p, const Node& first, const Node& second);
   bool inPair(const std::string& geom) const;
 
   Construction& c_;

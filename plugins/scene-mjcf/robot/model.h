@@ -23,6 +23,7 @@ struct ContactNumbers {
   std::array<double, 2> solref{0.02, 1};             ///< time constant [s], damping ratio
   std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance
   double margin = 0, gap = 0;                              ///< m
+  double solmix = 1;                                       ///< weight of solref and solimp against another surface's
   bool operator==(const ContactNumbers&) const = default;
 };
 
@@ -41,7 +42,8 @@ struct Geom {
   Pose pose;  ///< in its body
   ContactNumbers contact;
   int contactTypes = 1, contactAffinities = 1;
-  bool isShape = true;  ///< false: only its mass counts
+  bool isShape = true;            ///< false: only its mass counts
+  Vec3 ellipsoid = Vec3::Zero();  ///< half axes of an ellipsoid, whose shape is a convex one [m]; 0: it is none
   int group = 0;
   std::optional<std::array<double, 4>> color{};  ///< red, green, blue, opacity, each 0 to 1; nullopt: none is given
   std::optional<engine::Mass> mass;              ///< nullopt: none, because the body has an inertial element
@@ -96,6 +98,21 @@ struct Actuator {
   std::array<double, 3> gain{1, 0, 0}, bias{0, 0, 0};
   std::array<double, 2> controlRange{-HUGE_VAL, HUGE_VAL};
   std::array<double, 2> forceRange{-HUGE_VAL, HUGE_VAL};  ///< of the actuator's own force, before the gear
+  /// What only MuJoCo's engine has of an actuator (MuJoCo's documentation, "actuator/general").
+  struct Engine {
+    std::string type = "joint";     ///< jointinparent, tendon, site, slidercrank or body
+    std::string target, reference;  ///< tendon, body, site or crank's site; slider's site, or site of reference
+    std::array<double, 6> gear{1, 0, 0, 0, 0, 0};
+    double crankLength = 0;  ///< m
+    std::string dynamics = "none", gainType = "fixed", biasType = "none";
+    std::array<double, 10> dynamicsNumbers{1}, gain{1}, bias{};
+    std::array<double, 2> activationRange{}, lengthRange{};  ///< equal: none
+    /// A controller of a hinge or slider may be the same.
+    bool isPlain() const {
+      return (type == "joint" || type == "jointinparent") && dynamics == "none" && gainType != "muscle" &&
+             biasType != "muscle";
+    }
+  } engine;
 };
 
 /// How a sensor, or some of its numbers, differ from the truth: in the units of its percept, applied in this order.
@@ -129,8 +146,8 @@ struct Sensor {
 /// "equality").
 struct Equality {
   Element from;
-  std::string type, name;                                   ///< connect, weld or joint
-  std::string first, second;                                ///< bodies, or joints; second "": none
+  std::string type, name;                                   ///< connect, weld, joint or tendon
+  std::string first, second;                                ///< bodies, joints or tendons; second "": none
   Vec3 anchor = Vec3::Zero();                               ///< connect: in the first body; weld: in the second
   std::array<double, 7> relativePose{0, 1, 0, 0, 0, 0, 0};  ///< weld: of the second in the first; rotation 0: as placed
   double torqueScale = 1;
@@ -140,11 +157,14 @@ struct Equality {
   bool active = true;
 };
 
-/// A joint or a site that a tendon goes along.
+/// What a tendon goes along: a joint or a site, a geom around which it goes, or a pulley.
 struct TendonPart {
+  enum class Kind { joint, site, geom, pulley };
   Element from;
   std::string name;
-  double coefficient = 1;  ///< of a joint
+  double coefficient = 1;  ///< of a joint; of a pulley its divisor
+  Kind kind = Kind::joint;
+  std::string side;  ///< the site on whose side of the geom it goes; "": the shorter way
 };
 /// A tendon (MuJoCo's documentation, "tendon").
 struct Tendon {
@@ -167,10 +187,15 @@ struct Exclusion {
   std::string body1, body2;
 };
 
-/// Two geoms that collide, whatever their types say.
+/// Two geoms that collide, whatever their types say, and their surface.
 struct Pair {
   Element from;
   std::string geom1, geom2;
+  std::optional<int> condim{};
+  std::optional<std::array<double, 5>> friction{};
+  std::optional<std::array<double, 2>> solref{};
+  std::optional<std::array<double, 5>> solimp{};
+  std::optional<double> margin{}, gap{};
 };
 
 /// An option that the file sets: a property of the world, or of what MuJoCo alone reads of it, and its value.
@@ -193,6 +218,7 @@ struct Model {
   std::string name;
   bool selfCollides = true;  ///< false: its bodies do not collide with each other
   std::vector<Option> options;
+  std::string collision = "all";  ///< which geoms collide: "predefined" are pairs alone, "dynamic" is without pairs
   Flags flags;
   std::vector<Body> bodies;
   std::vector<Actuator> actuators;
@@ -201,6 +227,7 @@ struct Model {
   std::vector<Tendon> tendons;
   std::vector<Exclusion> exclusions;
   std::vector<Pair> pairs;
+  std::set<std::string, std::less<>> skippedTendons;    ///< names of tendons that are left out
   std::set<std::string, std::less<>> unsupportedGeoms;  ///< names of geoms that cannot collide
 };
 

@@ -12,7 +12,7 @@ TEST_CASE("actuators are read as gain and bias of a force on a joint") {
     <velocity joint='j' kv='5' ctrlrange='-1 1'/>
     <general joint='j' gainprm='4' biastype='affine' biasprm='1 -2 -3'/><muscle joint='j'/></actuator></mujoco>)");
   const std::vector<Actuator>& a = r.model.actuators;
-  REQUIRE(a.size() == 4);
+  REQUIRE(a.size() == 5);
   CHECK(a[0].gear == 3);
   CHECK(a[0].forceRange == std::array<double, 2>{-2, 2});
   CHECK(a[1].bias == std::array<double, 3>{0, -7, 0});
@@ -20,7 +20,11 @@ TEST_CASE("actuators are read as gain and bias of a force on a joint") {
   CHECK(a[2].controlRange == std::array<double, 2>{-1, 1});
   CHECK(a[3].gain == std::array<double, 3>{4, 0, 0});
   CHECK(a[3].bias == std::array<double, 3>{1, -2, -3});
-  CHECK(r.messages() == "a.xml:4:73: the actuator <muscle> is not supported\n");
+  CHECK(a[4].engine.dynamics == "muscle");
+  CHECK(a[4].engine.gain == std::array<double, 10>{0.75, 1.05, -1, 200, 0.5, 1.6, 1.5, 1.3, 1.2, 0});
+  CHECK(a[4].engine.bias == a[4].engine.gain);
+  CHECK(a[4].engine.dynamicsNumbers[1] == 0.04);
+  CHECK(r.messages().empty());
 }
 
 TEST_CASE("all types of actuators share one default") {
@@ -121,8 +125,11 @@ TEST_CASE("types of actuators change functions of their defaults as in MuJoCo 2.
   // Dynamics are inherited too, and the shortcuts have none.
   CHECK(first("<general dyntype='filter'/>", "<motor joint='j'/>").joint == "j");
   const Read filtered = read("<general dyntype='filter'/>", "<general name='g' joint='j'/>");
-  CHECK(filtered.model.actuators.empty());
-  CHECK_THAT(filtered.messages(), Catch::Contains("<general> 'g' has the dyntype 'filter', which is not supported"));
+  CHECK(filtered.model.actuators.at(0).engine.dynamics == "filter");
+  CHECK(filtered.messages().empty());
+  const Read unknown = read("", "<general name='g' joint='j' dyntype='user'/>");
+  CHECK(unknown.model.actuators.empty());
+  CHECK_THAT(unknown.messages(), Catch::Contains("<general> 'g' has the dyntype 'user', which is not supported"));
 }
 
 TEST_CASE("coordinates of joints count from the pose of the file") {
@@ -154,7 +161,7 @@ TEST_CASE("flags of the options are read") {
   CHECK(constraint.passive);
   CHECK(read("gravity='disable'").model.options.at(0).value == Value(List{0.0, 0.0, 0.0}));
   CHECK(read("equality='disable' energy='enable' contact='enable' filterparent='enable'").messages().empty());
-  CHECK(read("filterparent='disable' override='enable'").messages() ==
-        "a.xml:1:17: the flag override=\"enable\" is not supported\n");
+  CHECK(read("filterparent='disable' override='enable' refsafe='disable'").messages().empty());
+  CHECK(read("midphase='disable'").messages() == "a.xml:1:17: the flag midphase=\"disable\" is not supported\n");
   CHECK_THAT(failure("<mujoco><option><flag contact='off'/></option></mujoco>"), Catch::Contains("expected enable"));
 }

@@ -1,5 +1,11 @@
 // Reads models from MJCF texts.
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "../vocabulary.h"
 #include "read_model.h"
 
 using namespace spark;
@@ -135,14 +141,18 @@ TEST_CASE("a short list of numbers replaces only the first numbers of the defaul
   CHECK(g.shape.lengths.isApprox(Vec3(.2, .3, .6)));
 }
 
-TEST_CASE("an ellipsoid has a mass but does not collide, and a box can be given by its end points") {
+TEST_CASE("an ellipsoid is a convex shape with half axes, and a box can be given by its end points") {
   const Read r(
       world("<body><joint/><geom type='ellipsoid' size='.1 .2 .3' density='1000'/></body>"
             "<body><joint/><geom type='box' size='.1' fromto='0 0 0 0 0 1'/></body>"));
   CHECK(r.body(1).mass.mass == Approx(1000 * 4.0 / 3 * kPi * .006));
-  CHECK_FALSE(r.body(1).geoms[0].collides());
+  CHECK(r.body(1).geoms[0].collides());
+  CHECK(r.body(1).geoms[0].ellipsoid == Vec3(.1, .2, .3));
+  const std::vector<double>& corners = r.body(1).geoms[0].shape.mesh->vertices;
+  for (std::size_t i = 0; i < corners.size(); i += 3)
+    CHECK(Vec3(corners[i] / .1, corners[i + 1] / .2, corners[i + 2] / .3).norm() == Approx(1));
   CHECK(r.body(2).geoms[0].shape.lengths.isApprox(Vec3(.2, .2, 1)));
-  CHECK_THAT(r.messages(), Catch::Contains("the shape of an ellipsoid is not supported"));
+  CHECK(r.messages().empty());
 }
 
 TEST_CASE("the mass of an ellipsoid is added only if its group is in inertiagrouprange") {
@@ -236,5 +246,48 @@ TEST_CASE("a pair names geoms that are only seen otherwise") {
   const Read r = read(mesh + "<geom name='b' size='1'/>");
   CHECK(r.body(0).geoms.size() == 2);
   CHECK(r.model.unsupportedGeoms.empty());
-  CHECK(read(mesh + "<geom name='b' type='ellipsoid' size='1 1 1'/>").model.unsupportedGeoms.contains("b"));
+  CHECK(read(mesh + "<geom name='b' type='hfield' hfield='h'/>").model.unsupportedGeoms.contains("b"));
+}
+
+TEST_CASE("elements and attributes that MJCF does not have are named, wherever they are") {
+  for (const Word& w : vocabulary()) {
+    if (w.content == Word::foreign || w.element == "mujoco") continue;
+    // The element in those around it, up to the root, with an attribute and a child of no language.
+    std::string text = fmt::format("<{0} unheard='1'><unknown/></{0}>", w.element);
+    for (std::string_view in = w.in.substr(0, w.in.find(' ')); in != "mujoco";) {
+      text = fmt::format("<{0}>{1}</{0}>", in, text);
+      const auto around = std::find_if(vocabulary().begin(), vocabulary().end(),
+                                       [&](const Word& other) { return other.element == in; });
+      REQUIRE(around != vocabulary().end());
+      in = around->in.substr(0, around->in.find(' '));
+    }
+    Document document("a.xml", [&](const std::string&) { return "<mujoco>" + text + "</mujoco>"; });
+    Unsupported unsupported;
+    nameUnknown(document, unsupported);
+    const std::vector<std::string> sentences = unsupported.sentences();
+    INFO(text);
+    REQUIRE(sentences.size() == 2);
+    CHECK_THAT(sentences[0],
+               Catch::StartsWith("a.xml:1:") && Catch::Contains(fmt::format("'unheard' of <{}> is not", w.element)));
+    CHECK_THAT(sentences[1], Catch::Contains("the element <unknown> is not supported"));
+  }
+}
+
+TEST_CASE("The README has the table of elements and attributes") {
+  std::ifstream in(SPARK_SOURCES "/plugins/scene-mjcf/README.md");
+  const std::string readme{std::istreambuf_iterator(in), {}};
+  const auto code = [](std::string_view words) {
+    std::string out;
+    for (const char c : words) out += c == ' ' ? "` `" : std::string(1, c);
+    return out.empty() ? out : "`" + out + "`";
+  };
+  for (const Word& w : vocabulary()) {
+    const std::string row = fmt::format("| `{}` | {} | {} | {} |\n", w.element, code(w.in), code(w.read), code(w.idle));
+    INFO(row);
+    CHECK(readme.find(row) != std::string::npos);
+  }
+  const std::size_t begin = readme.find("| element | in |");
+  REQUIRE(begin != std::string::npos);
+  const std::string table = readme.substr(begin, readme.find("\n\n", begin) - begin);
+  CHECK(static_cast<std::size_t>(std::count(table.begin(), table.end(), '\n')) == vocabulary().size() + 1);
 }
