@@ -101,9 +101,9 @@ TEST_CASE("if an option cannot be set, no parameter of the world is changed") {
 TEST_CASE("with strict, a model that the tree cannot represent exactly is refused") {
   MjcfHost h;
   setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
-  CHECK_THAT(h.failure("<mujoco model='m'><worldbody><body><joint type='ball' armature='1'/><geom "
+  CHECK_THAT(h.failure("<mujoco model='m'><worldbody><body><joint type='ball' armour='1'/><geom "
                        "size='1'/></body></worldbody></mujoco>"),
-             Catch::Contains("armature"));
+             Catch::Contains("armour"));
   // MuJoCo 2.2.2 keeps a part of a damping that is switched off, of each kind of joint.
   for (const char* kind : {"free", "ball", "hinge"}) {
     CAPTURE(kind);
