@@ -85,6 +85,8 @@ Document::Found Document::find(const Node& node, const Source& source) {
     names = fileNames(source.file.name, node.type + ".proto", from_.folders);
     found = findIn(node.type, names);
   }
+  if (!found.proto) found = findElsewhere(node, named != externs.rend());
+  if (!found.proto) found = findKnown(node);
   if (!found.proto)
     missing(node.type, fmt::format("its PROTO is not there: looked for {}. What to do: put its file in one of these "
                                    "places, nothing is fetched from the web",
@@ -102,6 +104,30 @@ Document::Found Document::findIn(const std::string& type, const std::vector<std:
       missing(type, error.what());
     }
   return {};
+}
+
+/// Before EXTERNPROTO, Webots itself looked in all folders below `protos`.
+Document::Found Document::findElsewhere(const Node& node, bool isNamed) {
+  if (!from_.called) return {};
+  const Found found = findIn(node.type, from_.called(node.type + ".proto"));
+  if (found.proto && (isNamed || !node.yUp))
+    unsupported_.add(node.element(), fmt::format("the PROTO '{}' is not in its place: that in '{}' is taken", node.type,
+                                                 found.source->file.name));
+  return found;
+}
+
+/// One that comes with Webots, and needs no file.
+Document::Found Document::findKnown(const Node& node) {
+  const char* const text = knownProto(node);
+  if (!text) return {};
+  std::unique_ptr<Source>& source = sources_[fmt::format("webots: {}", node.type)];
+  if (!source) {
+    source = std::make_unique<Source>();
+    source->file.name = node.type + ".proto of Webots";
+    source->file.text = text;
+    source->parsed = parsed(source->file);
+  }
+  return {source.get(), source->parsed.protos.front()};
 }
 
 NodePtr Document::expand(const NodePtr& node, const Scope& scope) {

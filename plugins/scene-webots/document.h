@@ -21,6 +21,8 @@ struct Sources {
   ReadFile read;
   RunTemplate run;                     ///< empty: templates are not there
   std::vector<std::string> folders{};  ///< in which PROTO files are looked for as well
+  /// Files with a name of their own ("P.proto") anywhere else, the likeliest first; empty: there are none.
+  std::function<std::vector<std::string>(const std::string& name)> called{};
 };
 
 /// A world, or a PROTO file, with all that it needs of other files.
@@ -63,6 +65,8 @@ class Document {
 
   const Source* load(const std::string& name);
   Found find(const Node& node, const Source& source);
+  Found findKnown(const Node& node);
+  Found findElsewhere(const Node& node, bool isNamed);
   Found findIn(const std::string& type, const std::vector<std::string>& names);
   NodePtr expand(const NodePtr& node, const Scope& scope);
   NodePtr expandOnce(const Node& node, const Scope& scope);

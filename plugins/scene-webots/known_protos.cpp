@@ -41,6 +41,36 @@ void addWalls(Fields& f, const Frame& frame, mjcf::Body& body) {
 bool isBackdrop(std::string_view type) { return type == "TexturedBackground" || type == "TexturedBackgroundLight"; }
 bool isGround(std::string_view type) { return type == "Floor" || type == "RectangleArena" || type == "CircleArena"; }
 
+// What collides, and the fields with their defaults, which are those of Webots (its user guide, "Objects").
+const char* knownProto(const Node& node) {
+  if (node.yUp) return nullptr;  // their sides had another order
+  if (node.type == "SolidBox")
+    return R"(#VRML_SIM R2023b utf8
+PROTO SolidBox [ field SFVec3f translation 0 0 0 field SFRotation rotation 0 0 1 0 field SFString name "box"
+  field SFVec3f size 2 2 2 field SFString contactMaterial "default" field SFNode appearance NULL
+  field SFNode physics NULL field SFBool castShadows TRUE ] {
+  Solid { translation IS translation rotation IS rotation name IS name contactMaterial IS contactMaterial
+    children Shape { appearance IS appearance geometry DEF BOX Box { size IS size } castShadows IS castShadows }
+    boundingObject USE BOX physics IS physics } })";
+  if (node.type == "WoodenBox" || node.type == "CardboardBox")
+    return R"(#VRML_SIM R2023b utf8
+# template language: javascript
+PROTO WoodenBox [ field SFVec3f translation 0 0 0.3 field SFRotation rotation 0 0 1 0
+  field SFString name "wooden box" field SFVec3f size 0.6 0.6 0.6 field SFFloat mass 0
+  field MFNode immersionProperties [ ] field SFBool locked FALSE ] {
+  Solid { translation IS translation rotation IS rotation name IS name immersionProperties IS immersionProperties
+    children Shape { geometry DEF BOX Box { size IS size } } boundingObject USE BOX
+    %< if (fields.mass.value > 0) { >% physics Physics { density -1 mass IS mass } %< } >% } })";
+  if (node.type == "Wall" && node.field("size"))
+    return R"(#VRML_SIM R2023b utf8
+# template language: javascript
+PROTO Wall [ field SFVec3f translation 0 0 0 field SFRotation rotation 0 0 1 0 field SFString name "wall"
+  field SFVec3f size 1 1 1 field SFNode appearance NULL ] {
+  Solid { translation IS translation rotation IS rotation name IS name
+    boundingObject Pose { translation 0 0 %<= fields.size.value.z / 2 >% children Box { size IS size } } } })";
+  return nullptr;
+}
+
 // Webots puts a gear between the two hinges of such a joint, of which the second one has some play. A gear of 4e-9 kg
 // m^2 is nothing for a simulation with larger steps; its mass belongs to what it moves.
 NodePtr jointWithoutBacklash(const Node& node, mjcf::Unsupported& unsupported) {

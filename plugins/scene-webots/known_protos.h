@@ -11,6 +11,9 @@ namespace spark::webots {
 bool isBackdrop(std::string_view type);
 /// True for Floor, RectangleArena and CircleArena.
 bool isGround(std::string_view type);
+/// The text of a file with the PROTO of a box or a wall; nullptr for another type, or where the node does not say
+/// enough.
+const char* knownProto(const Node& node);
 /// A joint with backlash as the joint that it is without, with the mass of its gear; nullptr for another type.
 NodePtr jointWithoutBacklash(const Node& node, mjcf::Unsupported& unsupported);
 /// The mass of the gears of such a joint, a point at the place where it holds its solid [kg].

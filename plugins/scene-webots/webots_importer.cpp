@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "api/files.h"
+#include "file_index.h"
 #include "meshes/mesh_file.h"
 #include "robot/builder.h"
 #include "robot/names.h"
@@ -60,14 +61,20 @@ void WebotsImporter::import(std::string_view file, Node& root, const List& argum
   const webots::Base base = baseOf(file, arguments);
   const std::string prefix = arguments.empty() ? "" : arguments.front().plain();
   auto& files = kernel().root().require<IFileServer>();
+  webots::FileIndex index(files, std::string(file));
   webots::TemplateProcess templates(webots::TemplateProcess::path());
   const webots::Sources sources{
       [&](const std::string& name) { return files.exists(name) ? std::optional(files.read(name)) : std::nullopt; },
-      [&](const std::string& request) { return templates.ask(request); }, folders_};
+      [&](const std::string& request) { return templates.ask(request); }, folders_,
+      [&](const std::string& name) { return index.called(name); }};
   const webots::ReadMesh readMesh = [&](const std::string& of, const std::string& url) {
     const std::vector<std::string> candidates = webots::fileNames(of, url, folders_);
     for (const std::string& candidate : candidates)
       if (files.exists(candidate)) return meshes::readMesh(candidate, files.read(candidate));
+    if (const auto& others = index.called(url.substr(url.find_last_of("/\\") + 1)); !others.empty()) {
+      kernel().log().info("{}: the mesh '{}' is not in its place: '{}' is read", of, url, others.front());
+      return meshes::readMesh(others.front(), files.read(others.front()));
+    }
     throw Error(fmt::format("there is no such file; looked for {}", fmt::join(candidates, ", ")));
   };
   mjcf::Unsupported unsupported;

@@ -78,6 +78,36 @@ TEST_CASE("Robots stand side by side, each with a prefix, and leave the gravity 
                     Contains("expected a prefix for names, and 'fixed' or 'free', found 'loose'"));
 }
 
+TEST_CASE("PROTOs are looked for in the folders that a property names, and templates are run") {
+  WebotsHost h;
+  h.folder.write("shared/protos/Lamp.proto", R"(#VRML_SIM R2023b utf8
+# template language: javascript
+PROTO Lamp [ field SFFloat height 2 ] {
+  Solid { name "lamp" boundingObject Pose { translation 0 0 %<= fields.height.value / 2 >% children Sphere { } } } })");
+  const std::string text = "#VRML_SIM R2023b utf8\nLamp { height 3 }";
+  setProperty(*h.kernel.root().find("/sys/server/scene/webots"), "strict", true);
+  CHECK_THROWS_WITH(h.import(text), Contains("the PROTO 'Lamp' is not in its place"));
+  setProperty(*h.kernel.root().find("/sys/server/scene/webots"), "protos", List{"nowhere", "shared"});
+  h.import(text);
+  REQUIRE(h.find("lamp"));
+  CHECK(getProperty(*h.find("lamp/shape2"), "localPos").toList()[2].toNumber() == 1.5);
+}
+
+TEST_CASE("A PROTO that is not in its place is taken from another folder, and is an error with strict") {
+  WebotsHost h;
+  const std::string proto =
+      "#VRML_SIM R2023b utf8\nPROTO Lamp [ ] { Solid { name \"lamp\" boundingObject Sphere { } } }";
+  h.folder.write("other/parts/Lamp.proto", proto);
+  const std::string text = "#VRML_SIM R2023b utf8\nLamp { }";
+  setProperty(*h.kernel.root().find("/sys/server/scene/webots"), "strict", true);
+  CHECK_THROWS_WITH(
+      h.import(text),
+      Contains("r.wbt:2:1: the PROTO 'Lamp' is not in its place: that in 'other/parts/Lamp.proto' is taken"));
+  // As in versions of Webots in which the folders of a project were searched.
+  h.import("#VRML_SIM R2021b utf8\nLamp { }");
+  CHECK(h.find("lamp"));
+}
+
 TEST_CASE("A world that cannot be read leaves the tree as it was") {
   WebotsHost h;
   const std::size_t before = h.scene.asNode()->children().size();

@@ -362,6 +362,21 @@ Solid { boundingObject Plane { } name "ground" })");
   CHECK(east.body("solid").pose.position.isApprox(Vec3(0, 0, 1)));
 }
 
+TEST_CASE("Boxes and walls of Webots need no files") {
+  const Read r(world(R"(SolidBox { translation 1 0 0 size 1 2 3 }
+CardboardBox { mass 2 }
+WoodenBox { name "crate" translation 0 1 0 }
+Wall { size 0.2 3 2 }
+Wall { name "unknown" })"));
+  CHECK(r.body("box").geoms.at(0).shape.lengths == Vec3(1, 2, 3));
+  CHECK(r.body("box").joints.empty());
+  CHECK(r.body("wooden box").mass.mass == 2);
+  CHECK(r.body("wooden box").pose.position == Vec3(0, 0, 0.3));
+  CHECK(r.body("crate").joints.empty());
+  CHECK(r.body("wall").geoms.at(0).pose.position == Vec3(0, 0, 1));
+  CHECK_THAT(r.messages(), Contains("a.wbt:6:1: a node 'Wall' is empty"));
+}
+
 TEST_CASE("A joint with backlash is a joint without, and its gear has a mass") {
   const Read r(world(R"(Robot { children [ HingeJointWithBacklash { backlash 0.02 gearMass 0.5
     jointParameters HingeJointParameters { axis 0 1 0 anchor 0 0 1 } device RotationalMotor { name "m" }
