@@ -1,6 +1,17 @@
 #pragma once
 /// \file
 /// Sleep and repair: what is kept of each body beside model and state.
+///
+/// A body that is at rest sleeps: the solver skips it. It may do so as long as a step would leave it where it is, and
+/// that depends on
+///
+///     what touches it     poses, shapes, surfaces, and who collides with whom: all of it shows in its contacts. The
+///                         watch keeps a digest of those with which it fell asleep; with others it wakes.
+///     all else            joints, motors, masses, gravity: WorldModel wakes the bodies when one is set to another
+///     value.
+///
+/// Solvers wake what is connected with a body that is awake, so a pile wakes as a whole. With exactReplay nothing of
+/// this holds, as in the installed base: a body sleeps until it is pushed, or touched by one that is awake.
 
 #include "api/contacts.h"
 #include "rotations.h"
@@ -16,11 +27,18 @@ class BodyWatch {
   /// A body was added at the end.
   void add() { entries_.emplace_back(); }
   /// Bodies were removed: see physics::renumber().
-  void renumber(const std::vector<engine::Index>& now) { physics::renumber(entries_, now); }
+  void renumber(const std::vector<engine::Index>& now) {
+    physics::renumber(entries_, now);
+    loaded_.clear();
+  }
   /// The body was placed: its pose is valid.
   void placed(engine::Index body);
-  /// The body was woken: it is as long awake as any.
-  void woken(engine::Index body) { setCounters(body, {}); }
+  /// Wakes a body, because something that its rest depends on is another: its idle time starts anew. Not with
+  /// exactReplay.
+  void rouse(engine::Index body);
+  void rouseAll();
+  /// The body was woken or put to sleep by hand: it is as long awake as any, and rests on what touches it next.
+  void switched(engine::Index body, bool awake);
 
   /// The counters of sleep.
   struct Counters {
@@ -29,11 +47,39 @@ class BodyWatch {
     double idleTimeLeft = 0;  ///< idle time until the body falls asleep [s]
   };
   const Counters& counters(engine::Index body) const { return entries_[body].counters; }
-  void setCounters(engine::Index body, const Counters& c) { entries_[body].counters = c; }
+  /// What a body rests on.
+  struct Support {
+    std::uint64_t digest = 0;    ///< of its solved contacts, if it sleeps
+    std::uint32_t contacts = 0;  ///< their number in the last step in which it was awake and idle
+    bool known = false;          ///< false: the digest is that of the next step
+    bool slept = false;          ///< it has slept for a whole step
+  };
+  const Support& support(engine::Index body) const { return entries_[body].support; }
+  /// While it lives, rouse() does nothing: state is loaded, that of the bodies included.
+  class Loading {
+   public:
+    explicit Loading(BodyWatch& watch) : watch_(watch) { ++watch_.loadings_; }
+    ~Loading() { --watch_.loadings_; }
+    Loading(const Loading&) = delete;
+    Loading& operator=(const Loading&) = delete;
 
+   private:
+    BodyWatch& watch_;
+  };
+  bool loading() const { return loadings_ > 0; }
+  /// The state of the body was loaded, with these. What it depends on may be loaded later: see settle().
+  void loaded(engine::Index body, const Counters& counters, const Support& support);
+  /// All is loaded: what was loaded holds, whatever woke bodies since.
+  void settle();
+  /// True once after loaded(): contacts of an earlier step are not those of now.
+  bool takeLoaded();
+
+  /// Before a step of the simulation: wakes bodies that rest on other contacts than those with which they fell asleep.
+  void wake(const engine::Contacts& contacts);
   /// Before a step of the simulation of `dt` [s]: bodies that have been idle long enough fall asleep. `contacts`: those
-  /// that are solved keep a body from free flight.
-  void putToSleep(const engine::Contacts& contacts, double dt);
+  /// that are solved keep a body from free flight. `late`: they are those of the step before, and what a body rests on
+  /// is known at the next call of wake().
+  void putToSleep(const engine::Contacts& contacts, double dt, bool late = false);
   /// After a step: appends the bodies whose state was no number or out of range. They are back where they were, at
   /// rest.
   void repair(std::vector<engine::Index>& repaired);
@@ -41,13 +87,28 @@ class BodyWatch {
  private:
   struct Entry {
     Counters counters;
+    Support support;
     std::uint64_t lastContact = 0;      ///< number of the last call of putToSleep() with a solved contact
+    std::uint32_t contacts = 0;         ///< their number in that call
+    std::uint64_t touching = 0;         ///< sum of addDigests(); 0 otherwise
     Vec3 validPosition = Vec3::Zero();  ///< pose after the last step with a valid state
     Quaternion validQuaternion{1, 0, 0, 0};
   };
+  /// Adds the digest of each solved contact to `touching` of those of its bodies that `counts` is true for.
+  template <class Counts>
+  void addDigests(const engine::Contacts& contacts, Counts&& counts);
   WorldData& world_;
   std::vector<Entry> entries_;
   std::uint64_t calls_ = 0;  ///< of putToSleep()
+  struct Loaded {
+    engine::Index body;
+    bool awake;
+    Counters counters;
+    Support support;
+  };
+  std::vector<Loaded> loaded_;  ///< until settle() or the next step
+  bool anyLoaded_ = false;      ///< see takeLoaded()
+  int loadings_ = 0;            ///< see Loading
 };
 
 }  // namespace spark::physics

@@ -1,5 +1,7 @@
 #include "joint.h"
 
+#include <optional>
+
 #include "spark/state.h"
 
 namespace spark {
@@ -277,6 +279,8 @@ void Joint::saveState(StateWriter& out) const {
 }
 
 void Joint::loadState(StateReader& in) {
+  std::optional<physics::BodyWatch::Loading> loading;
+  if (world()) loading.emplace(world()->watch());
   for (int axis = 0; axis < axes(); ++axis)
     for (int p = 0; p < kSavedParameters; ++p) setParameter(static_cast<JointParameter>(p), axis, in.readNumber());
   for (int axis = 0; axis < axes(); ++axis) {

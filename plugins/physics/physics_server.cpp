@@ -36,8 +36,9 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
   d.property("exactReplay", &S::exactReplay_)
       .doc(
           "Worlds made from now on repeat recorded sessions of the installed base to the last digit, with that base's "
-          "engine and collision detection: numbers that enter them are rounded to single precision, and contacts are "
-          "solved in the order in which its spaces report them.");
+          "engine and collision detection: numbers that enter them are rounded to single precision, contacts are "
+          "solved in the order in which its spaces report them, and bodies that sleep do not notice what changes "
+          "around them.");
   d.property("contactsPerPair", &S::contactsPerPair_)
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
@@ -223,7 +224,7 @@ void PhysicsServer::solve(const Event& event) {
   const InUse detecting(collision ? collision->leaf() : engine.leaf(), "a step is under way");
   const double own = world->model().parameters.timestep, usual = own > 0 ? own : engine.capabilities().usualStep;
   const int steps = usual > 0 ? static_cast<int>(std::clamp(std::round(event.step / usual), 1.0, 1000.0)) : 1;
-  stepper->keepForces(steps > 1);
+  stepper->begin(steps);
   const bool late = engine.capabilities().late;
   for (int i = 0; i < steps; ++i) {
     if (late) {

@@ -360,6 +360,7 @@ void RigidBody::saveState(StateWriter& out) const {
   if (world_) world_->saveBody(body_, numbers);
   out.write(static_cast<std::int64_t>(numbers.size()));
   for (double v : numbers) out.write(v);
+  if (out.keeps()) out.aside(world_ ? world_->saveSupport(body_) : std::string());
 }
 
 void RigidBody::loadState(StateReader& in) {
@@ -375,6 +376,8 @@ void RigidBody::loadState(StateReader& in) {
   for (double& v : numbers) v = in.readNumber();
   applyMass(mass);
   if (world_) world_->loadBody(body_, numbers);
+  const std::string support = in.readString();
+  if (world_) world_->loadSupport(body_, support);
   placed_ = false;
   if (worldNode_ && !pendingShift_.isZero(0)) worldNode_->markRecentred();
 }

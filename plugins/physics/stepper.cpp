@@ -89,7 +89,10 @@ engine::IDetector* Stepper::bringDetector(engine::IEngine& engine, engine::IColl
   return &detector;
 }
 
-void Stepper::settle(engine::IEngine& engine, engine::ICollision* collision) { bringDetector(engine, collision); }
+void Stepper::settle(engine::IEngine& engine, engine::ICollision* collision) {
+  world_.watch().settle();
+  bringDetector(engine, collision);
+}
 
 void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
                      engine::Contacts& out) {
@@ -100,9 +103,10 @@ void Stepper::detect(engine::IEngine& engine, engine::ICollision* collision, eng
   data_.state.moved.clear();
 }
 
-void Stepper::keepForces(bool on) {
+void Stepper::begin(int steps) {
+  steps_ = steps;
   kept_.clear();
-  if (!on) return;
+  if (steps == 1) return;
   for (Index i = 0; i < data_.state.bodies.size(); ++i)
     if (const DynamicState& s = data_.state.bodies[i]; s.awake && !(s.force.isZero(0) && s.torque.isZero(0)))
       kept_.push_back({world_.handleOf(i), s.force, s.torque});
@@ -127,12 +131,20 @@ void Stepper::step(engine::IEngine& engine, engine::Contacts& contacts, double d
   engine::State& state = data_.state;
   const bool first = !std::exchange(again_, false);
   if (first) repaired_.clear();
-  if (std::none_of(state.bodies.begin(), state.bodies.end(), [](const DynamicState& s) { return s.awake; })) return;
+  // Contacts of the step before name bodies that may be others by now.
+  const bool restored = world_.watch().takeLoaded();
+  const bool current =
+      !can.late || (!restored && std::exchange(lateAt_, data_.model.structure) == data_.model.structure);
+  // Sleep counts steps of the simulation.
+  const bool sleeps = first && current && can.sleeps;
+  if (sleeps) world_.watch().wake(contacts);
+  const auto awake = [](const DynamicState& s) { return s.awake; };
+  // A late engine finds the contacts that wake bodies in its step.
+  if (!can.late && std::none_of(state.bodies.begin(), state.bodies.end(), awake)) return;
   // A step must not allocate.
   wrong_.reserve(state.bodies.size());
   repaired_.reserve(state.bodies.size());
-  // Sleep counts steps of the simulation.
-  if (first && data_.model.parameters.autoDisable && can.sleeps) world_.watch().putToSleep(contacts, dt);
+  if (sleeps && data_.model.parameters.autoDisable) world_.watch().putToSleep(contacts, steps_ * dt, can.late);
   added_.add(can, dt);
   world_.kinematics().begin();
   engine::Step step{data_.model, state, contacts, data_.rounded(dt), {}, sink};

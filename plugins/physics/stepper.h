@@ -18,13 +18,14 @@ class Stepper {
   /// may be nullptr.
   void detect(engine::IEngine& engine, engine::ICollision* collision, engine::PairFilter filter, int perPair,
               engine::Contacts& out);
-  /// Puts bodies that have been idle long enough to sleep, steps the world, and puts bodies whose state is no number or
+  /// Wakes and puts to sleep (BodyWatch), steps the world, and puts bodies whose state is no number or
   /// out of range back to their last valid pose, at rest. `contacts` are those of the last detect(), and nothing was
   /// removed since.
   /// `sink`: for an engine with Capabilities::late; `contacts` are then those of the step before.
   void step(engine::IEngine& engine, engine::Contacts& contacts, double dt, engine::IContactSink* sink = nullptr);
-  /// Keeps the forces and torques on the bodies, for a step of the simulation that has several of the engine's.
-  void keepForces(bool on);
+  /// Begins a step of the simulation that has `steps` of the engine's: keeps the forces and torques on the bodies where
+  /// there are several.
+  void begin(int steps);
   /// Adds the kept ones again, before a further step of the engine.
   void repeatForces();
   /// Writes what engines keep from step to step beside the state.
@@ -62,7 +63,9 @@ class Stepper {
     Vec3 force, torque;
   };
   std::vector<KeptForce> kept_;
-  bool again_ = false;  ///< the next step is a further one
+  int steps_ = 1;             ///< of the engine, in a step of the simulation
+  bool again_ = false;        ///< the next step is a further one
+  std::uint64_t lateAt_ = 0;  ///< Model::structure at the contacts of a late engine
   /// What was loaded, and is not taken yet.
   struct Loaded {
     std::int64_t hash = 0;

@@ -48,7 +48,7 @@ void WorldModel::setParameter(JointHandle joint, JointParameter p, int axis, dou
   const Index index = joints_[joint];
   engine::Blocks& scene = model_.extensions.sceneJoints[index];
   auto soft = isSoft(p) ? scene.get<engine::JointSoftness>() : engine::JointSoftness{};
-  *parameterOf(j, soft, motors_[index], p, axis) = v;
+  if (std::exchange(*parameterOf(j, soft, motors_[index], p, axis), v) != v) rouse(j);
   if (isSoft(p)) scene.set(engine::Block::of(soft));
   const bool motor = p == JointParameter::velocity || p == JointParameter::maxForce;
   if (motor)
@@ -88,7 +88,8 @@ void WorldModel::drive(JointHandle joint, int axis, double speed) {
   const Joint& j = of(joint);
   if (!hasParameter(j, JointParameter::velocity, axis) || std::isnan(speed)) return;
   const Index index = joints_[joint];
-  motors_[index][axis].velocity = rounded(bounded(speed));
+  const double now = rounded(bounded(speed)), before = std::exchange(motors_[index][axis].velocity, now);
+  if (now != before) rouse(j);
   endControl(index, axis);
   passMotor(index, axis);
   // Wake the first body of attach().
@@ -116,7 +117,7 @@ void WorldModel::control(JointHandle joint, int axis, const engine::Control& wan
   }
   motors_[index][axis] = {};
   passMotor(index, axis);
-  if (j.a != kNone && !state_.bodies[j.a].awake) setEnabled(bodies_.handleOf(j.a), true);
+  if (j.a != kNone && !state_.bodies[j.a].awake && !watch_.loading()) setEnabled(bodies_.handleOf(j.a), true);
 }
 
 const engine::Control* WorldModel::controlOf(JointHandle joint, int axis) const {
@@ -127,6 +128,7 @@ const engine::Control* WorldModel::controlOf(JointHandle joint, int axis) const 
 void WorldModel::endControl(Index joint, int axis) {
   const Index at = controlAt_[joint][axis];
   if (at == kNone) return;
+  rouse(model_.joints[joint]);
   state_.controls.erase(state_.controls.begin() + at);
   listControls();
 }
@@ -140,7 +142,9 @@ void WorldModel::listControls() {
 void WorldModel::setSpring(JointHandle joint, int axis, double stiffness, double position) {
   Joint& j = of(joint);
   if (axis < 0 || axis >= axesOf(j.type) || !(stiffness >= 0) || !std::isfinite(position)) return;
-  j.axes[axis].stiffness = bounded(stiffness);
+  const double k = bounded(stiffness);
+  if (j.axes[axis].stiffness != k || j.axes[axis].springPosition != position) rouse(j);
+  j.axes[axis].stiffness = k;
   j.axes[axis].springPosition = position;
   ++model_.dynamics;
 }

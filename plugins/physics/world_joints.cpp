@@ -53,12 +53,18 @@ void WorldModel::destroyJoint(JointHandle joint) {
 /// Leaves the joint without bodies.
 void WorldModel::detach(Index joint) {
   Joint& j = model_.joints[joint];
+  rouse(j);
   if (j.a != kNone) --model_.bodies[j.a].joints;
   if (j.b != kNone) --model_.bodies[j.b].joints;
   j.a = j.b = kNone;
   kinematics_.restart(joint);
   j.attachedAt = ++attachments_;
   ++model_.structure;
+}
+
+void WorldModel::rouse(const Joint& joint) {
+  if (joint.a != kNone) watch_.rouse(joint.a);
+  if (joint.b != kNone) watch_.rouse(joint.b);
 }
 
 void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
@@ -73,6 +79,7 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
   j.b = j.reversed ? kNone : bodies_[b];
   if (j.a != kNone) ++model_.bodies[j.a].joints;
   if (j.b != kNone) ++model_.bodies[j.b].joints;
+  rouse(j);
   // A fixed joint and an angular motor keep all numbers.
   if (!attached(j) || j.type == JointType::fixed || j.type == JointType::angularMotor) return;
 
@@ -105,6 +112,7 @@ void WorldModel::attach(JointHandle joint, BodyHandle a, BodyHandle b) {
 void WorldModel::remember(Joint& j, JointCall::Kind kind, int axis, const Vec3& world, int frame) {
   j.setAt = ++settings_;
   ++model_.dynamics;
+  rouse(j);
   if (!model_.exactReplay) return;
   const auto place = [&](Index body) {
     JointCall::Place p;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <tuple>
 
 #include "shapes.h"
 
@@ -37,11 +38,16 @@ WorldModel::WorldModel(bool exactReplay) {
 void WorldModel::setParameters(const engine::WorldParameters& p) {
   if (!inRange(p.gravity)) throw Error("expected a finite gravity for the world");
   if (p.joinedCollide != model_.parameters.joinedCollide) ++model_.structure;
-  model_.parameters = p;
+  const engine::WorldParameters before = std::exchange(model_.parameters, p);
   model_.parameters.gravity = rounded(p.gravity);
   model_.parameters.cfm = rounded(p.cfm);
   model_.parameters.contactSurfaceLayer = rounded(p.contactSurfaceLayer);
   ++model_.dynamics;
+  const auto all = [](const engine::WorldParameters& w) {
+    return std::tuple(w.gravity.x(), w.gravity.y(), w.gravity.z(), w.erp, w.cfm, w.autoDisable, w.joinedCollide,
+                      w.contactSurfaceLayer, w.timestep);
+  };
+  if (all(before) != all(model_.parameters)) watch_.rouseAll();
 }
 
 // ---- spaces ----
@@ -107,6 +113,7 @@ void WorldModel::setMass(BodyHandle body, const engine::Mass& mass) {
   b.inertia = mass.inertia;
   b.inverseInertia = mass.inertia.inverse();
   ++model_.dynamics;
+  watch_.rouse(bodies_[body]);
 }
 
 engine::BodyState WorldModel::state(BodyHandle body) const {
@@ -185,7 +192,7 @@ void WorldModel::addDrag(BodyHandle body, double linear, double angular) {
 void WorldModel::setEnabled(BodyHandle body, bool on) {
   const Index i = bodies_[body];
   state_.bodies[i].awake = on;
-  if (on) watch_.woken(i);
+  watch_.switched(i, on);
 }
 
 void WorldModel::setLinkOrigin(BodyHandle body, const Vec3& origin) {
@@ -219,8 +226,9 @@ void WorldModel::setConnector(BodyHandle body, bool on) {
 }
 
 void WorldModel::setGravityMode(BodyHandle body, bool on) {
-  model_.bodies[bodies_[body]].gravity = on;
+  const Index i = bodies_[body];
   ++model_.dynamics;
+  if (std::exchange(model_.bodies[i].gravity, on) != on) watch_.rouse(i);
 }
 
 namespace {
@@ -273,11 +281,30 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   ++data_.poses;
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
-  watch_.setCounters(i, {static_cast<int>(p[0]), p[1]});
+  watch_.loaded(i, {static_cast<int>(p[0]), p[1]}, {});
   s.rotation = rotationOf(s.quaternion);
   if (!derived) std::copy_n(p + 2, kSavedRotation, s.rotation.data());
   watch_.placed(i);
   state_.markMoved(i);
+}
+
+std::string WorldModel::saveSupport(BodyHandle body) const {
+  const BodyWatch::Support& s = watch_.support(bodies_[body]);
+  if (!s.known && s.contacts == 0) return {};
+  StateWriter out(true);
+  out.write(s.digest);
+  out.write(std::uint64_t{s.contacts} << 2 | std::uint64_t{s.slept} << 1 | std::uint64_t{s.known});
+  return out.take();
+}
+
+void WorldModel::loadSupport(BodyHandle body, std::string_view bytes) {
+  if (bytes.empty()) return;
+  StateReader in(bytes);
+  const auto digest = static_cast<std::uint64_t>(in.readInteger());
+  const auto rest = static_cast<std::uint64_t>(in.readInteger());
+  const Index i = bodies_[body];
+  watch_.loaded(i, BodyWatch::Counters(watch_.counters(i)),
+                {digest, static_cast<std::uint32_t>(rest >> 2), (rest & 1) != 0, (rest & 2) != 0});
 }
 
 // ---- geoms ----
@@ -349,6 +376,7 @@ void WorldModel::setBlocks(const engine::Blocks& blocks) {
   if (blocks.empty() && model_.extensions.world.empty()) return;
   model_.extensions.world = blocks;
   ++model_.dynamics;
+  watch_.rouseAll();
 }
 
 void WorldModel::setInput(std::uint64_t kind, double value) {
@@ -367,6 +395,8 @@ void WorldModel::setBlocks(GeomHandle geom, const engine::Blocks& blocks) {
   own = blocks;
   markEdited(geoms_[geom]);
   ++model_.dynamics;  // engines without a detection of their own read them, too
+  const Index body = model_.geoms[geoms_[geom]].body;
+  body == kNone ? watch_.rouseAll() : watch_.rouse(body);
 }
 
 void WorldModel::setBlocks(JointHandle joint, const engine::Blocks& blocks) {
@@ -374,6 +404,7 @@ void WorldModel::setBlocks(JointHandle joint, const engine::Blocks& blocks) {
   if (blocks.empty() && own.empty()) return;
   own = blocks;
   ++model_.dynamics;
+  rouse(of(joint));
 }
 
 void WorldModel::setCollides(GeomHandle geom, bool on) {

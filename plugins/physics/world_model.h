@@ -88,6 +88,10 @@ class WorldModel {
   void saveBody(BodyHandle body, std::vector<double>& out) const;
   /// Restores what saveBody() wrote, bit for bit. Throws Error for another number of values.
   void loadBody(BodyHandle body, std::span<const double> in);
+  /// What a body rests on, as bytes: beside saveBody(), of which it follows while nothing changes.
+  std::string saveSupport(BodyHandle body) const;
+  /// Restores it, behind loadBody(). Throws Error where it does not fit.
+  void loadSupport(BodyHandle body, std::string_view bytes);
   /// The index in the model.
   engine::Index index(BodyHandle body) const { return bodies_[body]; }
 
@@ -186,6 +190,8 @@ class WorldModel {
   }
   void markEdited(engine::Index geom);
   void detach(engine::Index joint);
+  /// Wakes the bodies of a joint: see BodyWatch::rouse().
+  void rouse(const engine::Joint& joint);
   void compactWhenMany();
   void endControl(engine::Index joint, int axis);
   void listControls();

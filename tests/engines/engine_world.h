@@ -54,7 +54,8 @@ struct EngineWorld : TestHost, engine::IContactSink {
   int most = 4;             ///< contacts of two geoms
   bool solve = true;        ///< contacts with a body are solved
 
-  explicit EngineWorld(const EngineKind& k) : kind(k), space(world.createSpace(physics::SpaceHandle::none)) {
+  explicit EngineWorld(const EngineKind& k, bool exactReplay = false)
+      : kind(k), world(exactReplay), space(world.createSpace(physics::SpaceHandle::none)) {
     kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
     kernel.plugins().use("physics-ode");
     kernel.plugins().use(k.plugin);

@@ -85,8 +85,11 @@ TEST_CASE("a hinge's angle follows its bodies, its axis and its turns, asleep an
           CHECK(two.world.at(j).coordinate(0) == Approx(yaw + 2 * kPi * turns).margin(1e-9));
         }
       };
-      two.world.setEnabled(two.child, !asleep);
-      two.world.setEnabled(two.parent, !asleep);
+      const auto rest = [&] {
+        two.world.setEnabled(two.child, !asleep);
+        two.world.setEnabled(two.parent, !asleep);
+      };
+      rest();
       two.run(2);
       expect(0, 0);
       turn(0.5);
@@ -101,9 +104,11 @@ TEST_CASE("a hinge's angle follows its bodies, its axis and its turns, asleep an
       two.run(2);
       expect(0.25, 1);
       two.world.destroyJoint(first);  // the hinge's index changes
+      rest();
       two.run(2);
       expect(0.25, 1);
       two.world.setAxis(j, 0, {0, 0, 1});
+      rest();
       expect(0, 0);
       two.run(2);
       expect(0, 0);

@@ -5,4 +5,4 @@
 -- args: --duration 6.5
 include "../lib/judge.lua"
 include "../lib/shelf.lua"
-shelfCase("move")
+shelfCase(function(shelf) shelf.localPos = { 30, 0, 2 } end)

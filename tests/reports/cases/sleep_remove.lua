@@ -5,4 +5,4 @@
 -- args: --duration 6.5
 include "../lib/judge.lua"
 include "../lib/shelf.lua"
-shelfCase("remove")
+shelfCase(function(shelf) shelf:delete() end)

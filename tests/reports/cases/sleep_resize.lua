@@ -1,0 +1,8 @@
+-- row: 1
+-- input: two crates rest on a shelf; the shelf becomes narrow at 4 s
+-- right: they fall to the ground
+-- engines: all
+-- args: --duration 6.5
+include "../lib/judge.lua"
+include "../lib/shelf.lua"
+shelfCase(function(shelf) shelf:find("board").boxLengths = { 1, 2, 0.1 } end)
