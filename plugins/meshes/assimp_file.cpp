@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <assimp/IOStream.hpp>
 #include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
@@ -16,6 +17,7 @@
 #include <cstring>
 #include <memory>
 #include <new>
+#include <span>
 #include <type_traits>
 
 #include "apart.h"
@@ -68,18 +70,47 @@ MeshMaterial materialOf(const aiMaterial& from) {
   return out;
 }
 
-AssimpMesh meshOf(const aiMesh& from) {
+/// `toScene`: from the mesh's frame to that of the scene.
+AssimpMesh meshOf(const aiMesh& from, const aiMatrix4x4& toScene) {
   AssimpMesh out{{}, {}, from.mMaterialIndex};
+  const bool mirrored = toScene.Determinant() < 0;
+  const aiMatrix3x3 normals = aiMatrix3x3(toScene).Inverse().Transpose();
   for (unsigned i = 0; i < from.mNumVertices; ++i) {
-    const aiVector3D& p = from.mVertices[i];
+    const aiVector3D p = toScene * from.mVertices[i];
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       throw Error("expected vertices of finite numbers");
-    const aiVector3D n = from.HasNormals() ? from.mNormals[i] : aiVector3D();
+    const aiVector3D n = from.HasNormals() ? (normals * from.mNormals[i]).NormalizeSafe() : aiVector3D();
     const aiVector3D t = from.HasTextureCoords(0) ? from.mTextureCoords[0][i] : aiVector3D();
     out.corners.push_back({{p.x, p.y, p.z}, {n.x, n.y, n.z}, {t.x, t.y}});
   }
-  for (unsigned f = 0; f < from.mNumFaces; ++f)
-    out.triangles.insert(out.triangles.end(), from.mFaces[f].mIndices, from.mFaces[f].mIndices + 3);
+  for (const aiFace& face : std::span(from.mFaces, from.mNumFaces))
+    if (face.mNumIndices == 3) {
+      out.triangles.insert(out.triangles.end(), face.mIndices, face.mIndices + 3);
+      // A mirrored triangle is seen from its other side.
+      if (mirrored) std::swap(out.triangles.end()[-1], out.triangles.end()[-2]);
+    }
+  return out;
+}
+
+/// Adds the meshes of a node and all below it. `above`: from the frame of its parent to that of the scene.
+void addMeshes(const aiScene& scene, const aiNode& node, const aiMatrix4x4& above, std::vector<AssimpMesh>& out) {
+  const aiMatrix4x4 toScene = above * node.mTransformation;
+  for (const unsigned m : std::span(node.mMeshes, node.mNumMeshes))
+    // A flag beside that of triangles says that some of them were one polygon.
+    if (const aiMesh& mesh = *scene.mMeshes[m]; mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE)
+      out.push_back(meshOf(mesh, toScene));
+  for (const aiNode* child : std::span(node.mChildren, node.mNumChildren)) addMeshes(scene, *child, toScene, out);
+}
+
+/// Names the faces of a file that are no triangles: of one corner, or of two.
+std::vector<std::string> leftOutOf(const aiScene& scene) {
+  std::array<std::size_t, 3> faces{};  // by number of corners
+  for (const aiMesh* mesh : std::span(scene.mMeshes, scene.mNumMeshes))
+    for (const aiFace& face : std::span(mesh->mFaces, mesh->mNumFaces))
+      if (face.mNumIndices < faces.size()) ++faces[face.mNumIndices];
+  std::vector<std::string> out;
+  if (faces[1]) out.push_back(fmt::format("{} point{}", faces[1], faces[1] == 1 ? "" : "s"));
+  if (faces[2]) out.push_back(fmt::format("{} line{}", faces[2], faces[2] == 1 ? "" : "s"));
   return out;
 }
 
@@ -89,8 +120,7 @@ AssimpFile readHere(const std::string& format, const std::string& bytes) {
   keepReadersOf(format, importer);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   const aiScene* const scene = importer.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_PreTransformVertices | aiProcess_SortByPType,
+      bytes.data(), bytes.size(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_SortByPType,
       format.c_str());
   if (!scene) {
     const std::string error = importer.GetErrorString();
@@ -99,9 +129,8 @@ AssimpFile readHere(const std::string& format, const std::string& bytes) {
   }
   AssimpFile out;
   for (unsigned m = 0; m < scene->mNumMaterials; ++m) out.materials.push_back(materialOf(*scene->mMaterials[m]));
-  for (unsigned m = 0; m < scene->mNumMeshes; ++m)
-    if (scene->mMeshes[m]->mPrimitiveTypes == aiPrimitiveType_TRIANGLE)
-      out.meshes.push_back(meshOf(*scene->mMeshes[m]));
+  if (scene->mRootNode) addMeshes(*scene, *scene->mRootNode, {}, out.meshes);
+  out.leftOut = leftOutOf(*scene);
   return out;
 }
 
@@ -135,6 +164,8 @@ std::string written(const AssimpFile& file) {
     out.write(bytesOf(&material.look, 1));
     out.write(material.texture);
   }
+  out.write(static_cast<std::uint64_t>(file.leftOut.size()));
+  for (const std::string& what : file.leftOut) out.write(what);
   return out.take();
 }
 
@@ -155,6 +186,7 @@ AssimpFile readBack(const std::string& bytes) {
     material.look = looks.front();
     material.texture = in.readString();
   }
+  for (std::size_t n = in.readCount(); n > 0; --n) out.leftOut.push_back(in.readString());
   for (const AssimpMesh& mesh : out.meshes) {
     if (mesh.material >= out.materials.size() || mesh.triangles.size() % 3 != 0)
       throw Error("expected triangles and their material");

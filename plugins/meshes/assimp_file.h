@@ -30,6 +30,7 @@ struct AssimpMesh {
 struct AssimpFile {
   std::vector<AssimpMesh> meshes;
   std::vector<MeshMaterial> materials;
+  std::vector<std::string> leftOut;  ///< what of the file is not here, such as "3 lines"
 };
 
 /// Reads a file in a process of its own, since assimp does not survive every damaged one. Throws Error if `format`, an

@@ -2,6 +2,8 @@
 
 #include <libqhull_r/qhull_ra.h>
 
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -55,6 +57,25 @@ class Hull {
   qhT qh_{};
 };
 
+/// The mean of its vertices.
+Vec3 middleOf(const engine::Mesh& m) {
+  Vec3 out = Vec3::Zero();
+  const std::size_t count = m.vertices.size() / 3;
+  for (std::size_t i = 0; i < count; ++i) out += m.vertex(i) / static_cast<double>(count);
+  return out;
+}
+
+/// Of the solids between a point and each triangle, whichever of its sides looks there.
+double volumeAround(const Vec3& point, const engine::Mesh& m) {
+  double sum = 0;
+  for (std::size_t t = 0; t + 2 < m.triangles.size(); t += 3) {
+    Mat3 c;
+    for (int i = 0; i < 3; ++i) c.col(i) = m.vertex(m.triangles[t + static_cast<std::size_t>(i)]) - point;
+    sum += std::abs(c.determinant()) / 6;
+  }
+  return sum;
+}
+
 }  // namespace
 
 engine::Mesh hullOf(std::vector<double> points) {
@@ -77,7 +98,27 @@ engine::Mesh hullOf(std::vector<double> points) {
                         points.begin() + 3 * std::ptrdiff_t(i) + 3);
   }
   for (std::uint32_t& v : out.triangles) v = place[v];
+  // Smaller ones have no place in engines: MuJoCo takes none of less than 1e-15 m^3.
+  constexpr double kLeast = 1e-14;
+  if (const double volume = volumeAround(middleOf(out), out); volume < kLeast)
+    throw Error(
+        fmt::format("expected vertices that span at least {} m^3, found {:.3g}: are they in metres?", kLeast, volume));
   return out;
+}
+
+bool hasArea(const engine::Mesh& surface) {
+  double twice = 0;
+  for (std::size_t t = 0; t + 2 < surface.triangles.size(); t += 3) {
+    const auto at = [&](std::size_t i) { return surface.vertex(surface.triangles[t + i]); };
+    twice += (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  return twice > 2e-6;
+}
+
+bool isConvex(const engine::Mesh& surface, const engine::Mesh& hull) {
+  const Vec3 middle = middleOf(hull);
+  const double whole = volumeAround(middle, hull);
+  return std::abs(volumeAround(middle, surface) - whole) < 1e-3 * whole;
 }
 
 }  // namespace spark::meshes

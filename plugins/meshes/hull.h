@@ -12,4 +12,10 @@ namespace spark::meshes {
 /// point outwards. Throws Error if the points lie in a plane, or are not finite.
 engine::Mesh hullOf(std::vector<double> points);
 
+/// True if the triangles of a surface have together an area that something can lie on: 1 mm^2.
+bool hasArea(const engine::Mesh& surface);
+
+/// True if a surface encloses as much as its convex hull: their volumes differ by less than one part in a thousand.
+bool isConvex(const engine::Mesh& surface, const engine::Mesh& hull);
+
 }  // namespace spark::meshes

@@ -68,15 +68,35 @@ struct ObjFile {
   }
 };
 
-/// Throws Error for a vertex that is not three finite numbers, which the reader would take for 0.
-void checkVertices(std::string_view text) {
-  for (std::size_t line = 1; !text.empty(); ++line) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    std::string_view rest = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
+/// Reads the lines of an OBJ file that its reader would not report.
+class ObjLines {
+ public:
+  /// Throws Error for a vertex that is not three finite numbers, which the reader would take for 0.
+  explicit ObjLines(std::string_view text) {
+    for (std::size_t line = 1; !text.empty(); ++line) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      read(text.substr(0, end), line);
+      text.remove_prefix(std::min(end + 1, text.size()));
+    }
+  }
+  /// What has no triangles: "2 lines".
+  std::vector<std::string> leftOut() const {
+    std::vector<std::string> out;
+    for (std::size_t i = 0; i < std::size(kOther); ++i)
+      if (counts_[i]) out.push_back(fmt::format("{} {}{}", counts_[i], kOther[i].second, counts_[i] == 1 ? "" : "s"));
+    return out;
+  }
+
+ private:
+  static constexpr std::pair<std::string_view, const char*> kOther[] = {
+      {"p", "point"}, {"l", "line"}, {"curv", "curve"}, {"curv2", "flat curve"}, {"surf", "free-form surface"}};
+
+  void read(std::string_view rest, std::size_t line) {
     const auto skipBlanks = [&rest] { rest.remove_prefix(std::min(rest.find_first_not_of(" \t\r"), rest.size())); };
     skipBlanks();
-    if (!rest.starts_with("v ") && !rest.starts_with("v\t")) continue;
+    const std::string_view word = rest.substr(0, rest.find_first_of(" \t\r"));
+    for (std::size_t i = 0; i < std::size(kOther); ++i) counts_[i] += word == kOther[i].first;
+    if (word != "v" || word.size() == rest.size()) return;
     rest.remove_prefix(1);
     for (int i = 0; i < 3; ++i) {
       skipBlanks();
@@ -89,10 +109,11 @@ void checkVertices(std::string_view text) {
       rest.remove_prefix(static_cast<std::size_t>(next - rest.data()));
     }
   }
-}
+  std::array<std::size_t, std::size(kOther)> counts_{};
+};
 
-Mesh readObj(const std::string& bytes) {
-  checkVertices(bytes);
+Mesh readObj(const std::string& bytes, std::vector<std::string>& leftOut) {
+  leftOut = ObjLines(bytes).leftOut();
   tinyobj::callback_t callbacks;
   callbacks.vertex_cb = [](void* file, float x, float y, float z, float) {
     for (const float c : {x, y, z}) {
@@ -113,18 +134,26 @@ Mesh readObj(const std::string& bytes) {
 
 }  // namespace
 
-Mesh readMesh(const std::string& name, const std::string& bytes) {
+Mesh readMesh(const std::string& name, const std::string& bytes, std::vector<std::string>* leftOut) {
   const std::string format = formatOf(name);
-  if (format == "msh") return readMsh(bytes);
-  if (format == "obj") return readObj(bytes);
+  std::vector<std::string> notRead;
   Mesh s;
-  for (const AssimpMesh& mesh : readAssimpFile(format, bytes).meshes) {
-    const auto first = static_cast<std::uint32_t>(s.vertices.size() / 3);
-    for (const AssimpMesh::Corner& corner : mesh.corners)
-      s.vertices.insert(s.vertices.end(), std::begin(corner.position), std::end(corner.position));
-    for (const std::uint32_t i : mesh.triangles) s.triangles.push_back(first + i);
+  if (format == "msh") {
+    s = readMsh(bytes);
+  } else if (format == "obj") {
+    s = readObj(bytes, notRead);
+  } else {
+    AssimpFile file = readAssimpFile(format, bytes);
+    for (const AssimpMesh& mesh : file.meshes) {
+      const auto first = static_cast<std::uint32_t>(s.vertices.size() / 3);
+      for (const AssimpMesh::Corner& corner : mesh.corners)
+        s.vertices.insert(s.vertices.end(), std::begin(corner.position), std::end(corner.position));
+      for (const std::uint32_t i : mesh.triangles) s.triangles.push_back(first + i);
+    }
+    if (s.triangles.empty()) throw Error("expected triangles, found none");
+    notRead = std::move(file.leftOut);
   }
-  if (s.triangles.empty()) throw Error("expected triangles, found none");
+  if (leftOut) leftOut->insert(leftOut->end(), notRead.begin(), notRead.end());
   return s;
 }
 

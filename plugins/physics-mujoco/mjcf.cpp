@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <unordered_map>
 
 #include "api/scene_joint.h"
@@ -82,6 +83,7 @@ std::string bodyName(Index body) { return fmt::format("b{}", body); }
 std::string partName(Index body, std::size_t part) { return fmt::format("b{}p{}", body, part); }
 std::string geomName(Index geom) { return fmt::format("g{}", geom); }
 std::string freeJointName(Index body) { return fmt::format("f{}", body); }
+std::string pieceName(Index geom, std::size_t piece) { return fmt::format("g{}p{}", geom, piece); }
 std::string jointName(Index joint, int coordinate) { return fmt::format("j{}_{}", joint, coordinate); }
 
 int coordinatesOf(JointType type) {
@@ -117,10 +119,11 @@ struct Writer {
   const Model& model;
   const Trees& trees;
   const Constraints& constraints;
+  const MeshPieces& pieces;
   double step;  // s
   std::string out;
-  std::vector<std::vector<Index>> children, geoms;             // by link; by body
-  std::unordered_map<const engine::Mesh*, Index> meshOf = {};  // the geom whose name it has
+  std::vector<std::vector<Index>> children, geoms;                            // by link; by body
+  std::unordered_map<const engine::Mesh*, Index> meshOf = {}, piecesIn = {};  // the geom whose name it has
 
   template <class... A>
   void put(fmt::format_string<A...> format, A&&... arguments) {
@@ -132,11 +135,36 @@ struct Writer {
     put(R"( pos="{}" quat="{} {} {} {}")", text(p.position), q.w(), q.x(), q.y(), q.z());
   }
 
+  /// The mesh that MuJoCo makes a hull of.
+  const engine::Mesh* meshFor(Index index) const {
+    const auto own = model.extensions.geoms[index].get<MeshNumbers>();
+    const engine::ShapeDescription& s = model.geoms[index].shape;
+    return s.shape == Shape::convex && own.mesh ? own.mesh : s.mesh.get();
+  }
+  /// The pieces of a geom that is a static mesh; empty: it is none, or has its hull.
+  std::span<const Piece> piecesFor(Index index) const {
+    const Geom& g = model.geoms[index];
+    if (g.shape.shape != Shape::mesh || g.body != kNone) return {};
+    return pieces.of(g).pieces;
+  }
+  /// True if a mesh has neither pieces nor a hull.
+  bool isNothing(Index index) const {
+    const Geom& g = model.geoms[index];
+    return g.shape.shape == Shape::mesh && piecesFor(index).empty() && !pieces.of(g).isSolid;
+  }
+
   void putGeom(Index index) {
+    const std::size_t count = piecesFor(index).size();
+    if (count == 0) return putGeom(index, geomName(index), "");
+    for (std::size_t k = 0; k < count; ++k)
+      putGeom(index, pieceName(index, k), fmt::format("m{}p{}", piecesIn.at(model.geoms[index].shape.mesh.get()), k));
+  }
+  /// `mesh`: the name of that of a piece.
+  void putGeom(Index index, const std::string& name, const std::string& mesh) {
     const Geom& g = model.geoms[index];
     const engine::ShapeDescription& s = g.shape;
-    if (s.shape == Shape::ray) return;
-    put(R"(<geom name="{}" contype="{}" conaffinity="{}")", geomName(index), g.collides ? 1 : 0, g.collides ? 1 : 0);
+    if (s.shape == Shape::ray || isNothing(index)) return;
+    put(R"(<geom name="{}" contype="{}" conaffinity="{}")", name, g.collides ? 1 : 0, g.collides ? 1 : 0);
     // No shape of MuJoCo's may be without extent.
     const auto length = [](double v) { return std::max(v, 1e-6); };
     Pose pose = g.offset;
@@ -172,7 +200,7 @@ struct Writer {
         pose.position += pose.rotation * Vec3(0, 0, s.heightField->low);
         break;
       default:
-        put(R"( type="mesh" mesh="m{}")", meshOf.at(s.mesh.get()));
+        put(R"( type="mesh" mesh="{}")", mesh.empty() ? fmt::format("m{}", meshOf.at(meshFor(index))) : mesh);
         break;
     }
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;
@@ -372,9 +400,14 @@ struct Writer {
     for (Index i = 0; i < model.geoms.size(); ++i) {
       const engine::ShapeDescription& s = model.geoms[i].shape;
       // Geoms that share a mesh share one here.
-      if (s.mesh && meshOf.emplace(s.mesh.get(), i).second)
-        put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(s.mesh->vertices, " "),
-            fmt::join(s.mesh->triangles, " "));
+      const engine::Mesh* const mesh = isNothing(i) ? nullptr : meshFor(i);
+      const std::span<const Piece> parts = piecesFor(i);
+      if (mesh && parts.empty() && meshOf.emplace(mesh, i).second)
+        put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(mesh->vertices, " "),
+            fmt::join(mesh->triangles, " "));
+      if (!parts.empty() && piecesIn.emplace(mesh, i).second)
+        for (std::size_t k = 0; k < parts.size(); ++k)
+          put(R"(<mesh name="m{}p{}" vertex="{}"/>)", i, k, fmt::join(parts[k], " "));
       // Its heights are written to the compiled model: see takeHeights().
       if (s.shape == Shape::heightField)
         put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{} {} {} 1"/>)", geomName(i), s.heightField->columns,
@@ -408,8 +441,8 @@ bool hasOwnDrag(const Model& model) {
 }
 
 std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes,
-                   const Constraints& constraints) {
-  Writer w{model, trees, constraints, step, {}, {}, {}};
+                   const Constraints& constraints, const MeshPieces& pieces) {
+  Writer w{model, trees, constraints, pieces, step, {}, {}, {}};
   w.children.resize(trees.links.size());
   for (Index i = 0; i < trees.links.size(); ++i)
     if (trees.links[i].parent != kNone) w.children[trees.links[i].parent].push_back(i);

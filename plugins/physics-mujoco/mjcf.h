@@ -6,6 +6,9 @@
 #include <vector>
 
 #include "api/joint_trees.h"
+#include "api/state.h"
+#include "mesh_pieces.h"
+#include "mujoco_mesh.h"
 #include "mujoco_nodes.h"
 
 namespace spark::mujoco {
@@ -42,6 +45,8 @@ std::string bodyName(Index body);
 /// Of a part of a body, from 1.
 std::string partName(Index body, std::size_t part);
 std::string geomName(Index geom);
+/// Of a piece of a static mesh, from 0.
+std::string pieceName(Index geom, std::size_t piece);
 std::string jointName(Index joint, int coordinate);
 /// Of a free body.
 std::string freeJointName(Index body);
@@ -66,6 +71,6 @@ bool hasActuators(const engine::Model& model);
 
 /// The text. `step`: length of a step [s].
 std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes,
-                   const Constraints& constraints);
+                   const Constraints& constraints, const MeshPieces& pieces);
 
 }  // namespace spark::mujoco

@@ -1,5 +1,6 @@
 #include "mujoco_engine.h"
 
+#include "mujoco_mesh.h"
 #include "spark/plugin.h"
 
 namespace spark {
@@ -14,4 +15,4 @@ void MujocoEngine::report(const std::string& message) {
 
 SPARK_PLUGIN("physics-mujoco", "1.0", "MuJoCo: contacts and dynamics in coordinates of joints.", spark::MujocoEngine,
              spark::MujocoOptions, spark::MujocoSurface, spark::MujocoAxis, spark::MujocoEquality, spark::MujocoTendon,
-             spark::MujocoActuator, spark::MujocoPair, spark::MujocoFreedom)
+             spark::MujocoActuator, spark::MujocoPair, spark::MujocoFreedom, spark::MujocoMesh)

@@ -5,6 +5,7 @@
 #include "api/inputs.h"
 #include "api/phases.h"
 #include "mujoco_actuators.h"
+#include "mujoco_mesh.h"
 #include "mujoco_nodes.h"
 #include "mujoco_solver.h"
 #include "spark/describe.h"
@@ -25,7 +26,6 @@ class MujocoEngine : public Leaf, public engine::IEngine {
                                                       .stateless = false,
                                                       .parts = false,
                                                       .detects = true,
-                                                      .meshes = false,
                                                       .bodyMeshes = false,
                                                       .controls = true,
                                                       .damping = true,
@@ -53,7 +53,7 @@ class MujocoEngine : public Leaf, public engine::IEngine {
     using namespace mujoco;
     for (const std::string_view own :
          {SurfaceNumbers::kKind, AxisNumbers::kKind, OptionNumbers::kKind, EqualityNumbers::kKind, TendonNumbers::kKind,
-          ActuatorNumbers::kKind, PairNumbers::kKind, FreedomNumbers::kKind})
+          ActuatorNumbers::kKind, PairNumbers::kKind, FreedomNumbers::kKind, MeshNumbers::kKind})
       if (kind == engine::kindOf(own)) return true;
     return false;
   }

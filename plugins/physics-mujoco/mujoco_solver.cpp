@@ -24,9 +24,9 @@ int stepsToCompile(std::size_t bodies) {
 /// Compiles in a thread of its own, from copies that end there. In real time it has the lowest priority, so that it
 /// does not slow the simulation.
 // NOLINTNEXTLINE(performance-unnecessary-value-param)
-Compiled compileAside(engine::Model model, Trees trees, double step, Sizes sizes, bool paced) {
+Compiled compileAside(engine::Model model, Trees trees, double step, Sizes sizes, MeshPieces pieces, bool paced) {
   if (paced) ::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), 19);
-  return compileWorld(toMjcf(model, trees, step, sizes, Constraints(model, trees)), true);
+  return compileWorld(toMjcf(model, trees, step, sizes, Constraints(model, trees), pieces), true);
 }
 
 /// Steps for which a world that changes again and again may wait for its model.
@@ -66,10 +66,30 @@ void MujocoSolver::compile(const engine::Model& model, const engine::State& stat
   const Sizes least = sizesFor(model);
   sizes_ = {std::max(least.contacts, sizes_.contacts), std::max(least.rows, sizes_.rows)};
   poses_.clear();
+  takeMeshes(model);
   if (world_ && static_cast<int>(model.bodies.size()) > engine_.atOnce_ && pending_.waited < kLongestWait)
     buildAside(model, state);
   else
     build(model, state);
+}
+
+void MujocoSolver::takeMeshes(const engine::Model& model) {
+  pieces_.update(model);
+  const auto say = [&](bool& said, const engine::Geom& g, const char* what) {
+    if (!std::exchange(said, true))
+      engine_.kernel().log().warning("{}: a mesh of {} triangles {}", engine_.path(),
+                                     g.shape.mesh->triangles.size() / 3, what);
+  };
+  for (const engine::Geom& g : model.geoms) {
+    if (g.shape.shape != engine::Shape::mesh) continue;
+    const MeshPieces::Entry& made = pieces_.of(g);
+    const bool hasPieces = g.body == kNone && !made.pieces.empty();
+    if (!hasPieces && !made.isSolid) say(saidFlat_, g, "is flat, and on a body does not collide in MuJoCo");
+    if (g.body == kNone && !hasPieces && made.isSolid)
+      say(saidHull_, g,
+          "that does not move has too many convex pieces: it collides as its convex hull, its hollows are "
+          "filled. Take a HeightFieldCollider, or ConvexColliders");
+  }
 }
 
 void MujocoSolver::build(const engine::Model& model, const engine::State& state) {
@@ -78,7 +98,7 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   Trees trees(model, state);
   const Constraints constraints(model, trees);
   reportSkipped(constraints);
-  const std::string text = toMjcf(model, trees, step_, sizes_, constraints);
+  const std::string text = toMjcf(model, trees, step_, sizes_, constraints, pieces_);
   try {
     begin(model, std::move(trees), compileWorld(text));
     if (before) world_->takeActivations(*before);
@@ -119,7 +139,7 @@ void MujocoSolver::buildAside(const engine::Model& model, const engine::State& s
   p.trees.emplace(model, state);
   p.poses = posesOf(state);
   reportSkipped(Constraints(model, *p.trees));
-  p.compiled = std::async(std::launch::async, compileAside, model, *p.trees, step_, sizes_, engine_.isPaced());
+  p.compiled = std::async(std::launch::async, compileAside, model, *p.trees, step_, sizes_, pieces_, engine_.isPaced());
 }
 
 void MujocoSolver::abandon() {

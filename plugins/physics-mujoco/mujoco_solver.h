@@ -40,6 +40,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
     int stepsLeft = 0;         ///< until it takes over
     int waited = 0;            ///< steps since the first change that is not in yet
   };
+  /// Makes what MuJoCo needs of the meshes, and logs what of them has no effect.
+  void takeMeshes(const engine::Model& model);
   void build(const engine::Model& model, const engine::State& state);
   void buildAside(const engine::Model& model, const engine::State& state);
   void begin(const engine::Model& model, Trees trees, Compiled compiled);
@@ -54,6 +56,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   LibraryGuard library_;
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
+  MeshPieces pieces_;
+  bool saidFlat_ = false, saidHull_ = false;
   Sizes sizes_;
   double step_ = 0.005;       ///< s
   std::vector<int> skipped_;  ///< constraints that the last model leaves out

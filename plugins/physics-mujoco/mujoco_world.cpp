@@ -123,11 +123,18 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
     if (const int i = mj_name2id(m_.get(), mjOBJ_ACTUATOR, actuatorName(number).c_str()); i >= 0)
       inputs_.emplace_back(engine::Block::kindOf<ActuatorNumbers>(number), i);
   geoms_.assign(m_->ngeom, 0);
-  for (Index i = 0; i < model.geoms.size(); ++i)
+  for (Index i = 0; i < model.geoms.size(); ++i) {
     if (const int geom = id(compiled.geoms, geomName(i)); geom >= 0) {
       geoms_[geom] = model.geoms[i].id;
       takeHeights(*m_, geom, model.geoms[i].shape);
     }
+    if (model.geoms[i].shape.shape != engine::Shape::mesh) continue;
+    for (std::size_t piece = 0;; ++piece) {
+      const int geom = id(compiled.geoms, pieceName(i, piece));
+      if (geom < 0) break;
+      geoms_[geom] = model.geoms[i].id;
+    }
+  }
 
   wrenches_.resize(static_cast<std::size_t>(m_->nbody));
   for (int body = 0; body < m_->nbody; ++body) {

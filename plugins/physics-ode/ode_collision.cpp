@@ -346,7 +346,8 @@ void near(void* detection, dGeomID o1, dGeomID o2) {
 }
 
 PlacedShape placed(const GeomData& g) {
-  return {g.shape, g.shared.hull ? &g.shared.hull->hull : nullptr, toVec(dGeomGetPosition(g.geom)), toMat(g.rotation)};
+  return {g.shape, g.shared.hull ? &g.shared.hull->hull() : nullptr, toVec(dGeomGetPosition(g.geom)),
+          toMat(g.rotation)};
 }
 
 /// Degenerate shapes may give numbers that are not finite; faces that touch exactly, without depth, no normal.
@@ -359,7 +360,11 @@ bool isContact(const dContactGeom& g) {
 int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts& contacts, dContactGeom* found) {
   const bool second = a.shape.shape != Shape::convex;
   const GeomData &hull = second ? b : a, &other = second ? a : b;
-  const auto ask = [&](int most) { return dCollide(hull.geom, other.geom, most, found, sizeof(dContactGeom)); };
+  const auto ask = [&](int most) {
+    const dGeomID o1 = hull.shared.hull->probeAt(hull.geom, 0);
+    const dGeomID o2 = other.shared.hull ? other.shared.hull->probeAt(other.geom, 1) : other.geom;
+    return dCollide(o1, o2, most, found, sizeof(dContactGeom));
+  };
   int count = 0;
   switch (other.shape.shape) {
     case Shape::plane: {
@@ -371,7 +376,7 @@ int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts&
     case Shape::mesh: {
       // ODE finds those of this order alone, triangle by triangle.
       const std::lock_guard lock(meshMutex());
-      count = other.body == kNone ? contacts.onMesh(placed(hull), hull.shared.hull->probe, other.geom, max, found)
+      count = other.body == kNone ? contacts.onMesh(placed(hull), hull.shared.hull->probe(), other.geom, max, found)
                                   : contacts.choose(ask(kMaxPerPair), max, found);
       break;
     }

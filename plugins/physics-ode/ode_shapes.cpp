@@ -18,13 +18,48 @@ OdeMesh::OdeMesh(std::shared_ptr<const engine::Mesh> from) : mesh(std::move(from
   dGeomTriMeshDataPreprocess2(data, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
 }
 
-OdeHull::OdeHull(std::shared_ptr<const engine::Mesh> mesh) : hull(std::move(mesh)), probe(create(nullptr)) {}
+namespace {
 
-OdeHull::~OdeHull() { destroyGeom(probe); }
+/// ODE keeps the pose of a destroyed geom for the next one that is created, in whichever thread, and exchanges it
+/// atomically. The thread sanitizer cannot see that within a library: it is told of the order by this tag.
+#ifdef __SANITIZE_THREAD__
+char posesOrder;
+void posePutBack() { __tsan_release(&posesOrder); }
+void poseTaken() { __tsan_acquire(&posesOrder); }
+#else
+void posePutBack() {}
+void poseTaken() {}
+#endif
 
-dGeomID OdeHull::create(dSpaceID space) const {
-  return dCreateConvex(space, hull.planes().data(), static_cast<unsigned>(hull.faces().size()), hull.corners().data(),
+dGeomID createHull(const ConvexHull& hull, dSpaceID space, std::size_t faces) {
+  return dCreateConvex(space, hull.planes().data(), static_cast<unsigned>(faces), hull.corners().data(),
                        static_cast<unsigned>(hull.corners().size() / 3), hull.polygons().data());
+}
+
+}  // namespace
+
+OdeHull::~OdeHull() {
+  for (const dGeomID probe : probes_)
+    if (probe) destroyGeom(probe);
+}
+
+dGeomID OdeHull::create(dSpaceID space) const { return createHull(hull_, space, 0); }
+
+dGeomID OdeHull::probe(int which) {
+  dGeomID& probe = probes_[which];
+  if (!probe) {
+    probe = createHull(hull_, nullptr, hull_.faces().size());
+    poseTaken();
+  }
+  return probe;
+}
+
+dGeomID OdeHull::probeAt(dGeomID geom, int which) {
+  const dGeomID out = probe(which);
+  const dReal* const p = dGeomGetPosition(geom);
+  dGeomSetPosition(out, p[0], p[1], p[2]);
+  dGeomSetRotation(out, dGeomGetRotation(geom));
+  return out;
 }
 
 OdeHeights::OdeHeights(std::shared_ptr<const engine::HeightField> from)
@@ -48,17 +83,6 @@ Mat3 OdeHeights::toShape() {
 }
 
 namespace {
-
-/// ODE keeps the pose of a destroyed geom for the next one that is created, in whichever thread, and exchanges it
-/// atomically. The thread sanitizer cannot see that within a library: it is told of the order by this tag.
-#ifdef __SANITIZE_THREAD__
-char posesOrder;
-void posePutBack() { __tsan_release(&posesOrder); }
-void poseTaken() { __tsan_acquire(&posesOrder); }
-#else
-void posePutBack() {}
-void poseTaken() {}
-#endif
 
 /// A rotation that turns the z axis to `direction`.
 Mat3 alongZ(const Vec3& direction) {
@@ -134,7 +158,7 @@ Pose frameOf(const ShapeDescription& s, const SharedShape& shared) {
     case Shape::ray:
       return {s.rayOrigin, alongZ(s.rayDirection)};
     case Shape::convex:
-      return {shared.hull->hull.center(), Mat3::Identity()};
+      return {shared.hull->hull().center(), Mat3::Identity()};
     case Shape::heightField:
       return {Vec3::Zero(), OdeHeights::toShape()};
     default:

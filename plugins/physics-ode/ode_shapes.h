@@ -21,14 +21,27 @@ struct OdeMesh {
 };
 
 /// A convex hull. ODE refers to its numbers.
-struct OdeHull {
-  ConvexHull hull;
-  dGeomID probe;  ///< in no space: for questions about places other than that of a geom
-  explicit OdeHull(std::shared_ptr<const engine::Mesh> mesh);
+///
+/// When ODE makes a geom of a hull it compares each edge with all others: half a second for 7,000 corners. So geoms in
+/// spaces have corners alone, which give their bounds, and one geom with faces is moved to where a question is asked.
+class OdeHull {
+ public:
+  explicit OdeHull(std::shared_ptr<const engine::Mesh> mesh) : hull_(std::move(mesh)) {}
   ~OdeHull();
   OdeHull(const OdeHull&) = delete;
   OdeHull& operator=(const OdeHull&) = delete;
+  const ConvexHull& hull() const { return hull_; }
+  /// A geom in a space, without faces.
   dGeomID create(dSpaceID space) const;
+  /// A geom with faces in no space, to be placed by the caller. It is made when it is first needed. `which`: 0 or 1, of
+  /// two geoms that have the same hull.
+  dGeomID probe(int which = 0);
+  /// The same, placed like `geom`.
+  dGeomID probeAt(dGeomID geom, int which);
+
+ private:
+  ConvexHull hull_;
+  dGeomID probes_[2] = {nullptr, nullptr};
 };
 
 /// A height field. In ODE its heights are along y, and its rows along -z.

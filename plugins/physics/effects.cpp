@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <unordered_map>
 
 #include "api/joint_trees.h"
 
@@ -80,6 +81,12 @@ bool isConvex(const engine::Mesh& m) {
 }  // namespace
 
 void Effects::checkShapes(const engine::Capabilities& can) {
+  std::unordered_map<const engine::Mesh*, bool> convex;  // many colliders may share a mesh
+  const auto isKnownConvex = [&convex](const engine::Mesh& m) {
+    const auto [known, isNew] = convex.try_emplace(&m);
+    if (isNew) known->second = isConvex(m);
+    return known->second;
+  };
   for (const Collider* node : colliders) {
     const auto s = node->shape();
     if (!s) continue;
@@ -87,7 +94,7 @@ void Effects::checkShapes(const engine::Capabilities& can) {
       node->kernel().log().warning("{}: height fields do not collide with {}: take a TriMeshCollider, or boxes",
                                    node->path(), engineName_);
     if (s->shape != engine::Shape::mesh || said_[kMeshes]) continue;
-    if ((node->body() ? can.bodyMeshes : can.meshes) || isConvex(*s->mesh)) continue;
+    if ((node->body() ? can.bodyMeshes : can.meshes) || isKnownConvex(*s->mesh)) continue;
     said_[kMeshes] = true;
     node->kernel().log().warning(
         "{}: a {} mesh collides as its convex hull with {}, its hollows are filled: take a ConvexCollider for each "

@@ -1,5 +1,7 @@
 #include "mesh_colliders.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "api/files.h"
@@ -19,8 +21,12 @@ namespace physics {
 namespace {
 
 /// Reads a mesh file. Its numbers are checked where a shape enters the model, but for those of hulls.
-engine::Mesh readScaled(IFileServer& files, const MeshSource& source, bool hull) {
-  engine::Mesh mesh = meshes::readMesh(source.file, files.read(source.file));
+engine::Mesh readScaled(IFileServer& files, const MeshSource& source, const Leaf& node, bool hull) {
+  std::vector<std::string> leftOut;
+  engine::Mesh mesh = meshes::readMesh(source.file, files.read(source.file), &leftOut);
+  if (!leftOut.empty())
+    node.kernel().log().warning("{}: the mesh '{}' has {}, which do not collide", node.path(), source.file,
+                                fmt::join(leftOut, ", "));
   if (mesh.vertices.size() + mesh.triangles.size() > kMostMeshNumbers)
     throw Error(fmt::format("expected a mesh of at most {} numbers, found {}: simplify it", kMostMeshNumbers,
                             mesh.vertices.size() + mesh.triangles.size()));
@@ -40,8 +46,10 @@ void loadMesh(MeshSource& source, const Leaf& node, MeshPool& pool, bool hull) {
   // The bits of the scale, not its digits, decide whether two are the same.
   const std::string name = fmt::format("{}\n{:016x}\n{:a} {:a} {:a}\n{}", source.file, files.stamp(source.file),
                                        source.scale.x(), source.scale.y(), source.scale.z(), hull ? "hull" : "mesh");
-  source.mesh = pool.get(name, [&] { return readScaled(files, source, hull); });
+  source.mesh = pool.get(name, [&] { return readScaled(files, source, node, hull); });
 }
+
+engine::Mesh hullOf(const engine::Mesh& points) { return meshes::hullOf(points.vertices); }
 
 std::pair<std::string, Vec3> siblingMesh(const Leaf& collider) {
   const IVisual* found = nullptr;
@@ -109,9 +117,9 @@ void ConvexCollider::setPoints(std::vector<double> points) {
     throw Error(
         fmt::format("{}: expected at most {} numbers, found {}", where(), physics::kMostMeshNumbers, points.size()));
   if (!points.empty()) {
-    next.numbers = shared({points, {}});
+    next.numbers = shared({std::move(points), {}});
     try {
-      next.mesh = shared(meshes::hullOf(std::move(points)));
+      next.mesh = hullOf(next.numbers);
     } catch (const Error& e) {
       throw Error(fmt::format("{}: there is no convex hull", where()), e);
     }

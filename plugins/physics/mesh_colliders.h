@@ -16,6 +16,8 @@ struct MeshSource {
 };
 /// Fills `mesh` of a source with a file; with its hull if `hull`. Throws Error, with the resource's name.
 void loadMesh(MeshSource& source, const Leaf& node, MeshPool& pool, bool hull);
+/// The convex hull of a mesh. Throws Error.
+engine::Mesh hullOf(const engine::Mesh& points);
 /// The mesh file and the scale of the visual node beside `collider` that shows one. Throws Error if there is none.
 std::pair<std::string, Vec3> siblingMesh(const Leaf& collider);
 }  // namespace physics
@@ -78,6 +80,12 @@ class MeshCollider : public Base {
   physics::MeshPool::Shared shared(engine::Mesh mesh) const {
     if (this->world()) return this->world()->meshes().share(std::move(mesh));
     return std::make_shared<const engine::Mesh>(std::move(mesh));
+  }
+  /// The hull of such numbers.
+  physics::MeshPool::Shared hullOf(const physics::MeshPool::Shared& numbers) const {
+    const auto make = [&] { return physics::hullOf(*numbers); };
+    if (this->world()) return this->world()->meshes().hullOf(numbers, make);
+    return std::make_shared<const engine::Mesh>(make());
   }
   std::vector<double> vertices() const { return source_.numbers ? source_.numbers->vertices : std::vector<double>(); }
   const physics::MeshSource& source() const { return source_; }

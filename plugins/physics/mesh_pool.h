@@ -21,6 +21,9 @@ class MeshPool {
   Shared share(engine::Mesh mesh);
   /// The mesh that `make` made under this name, while a shape has it; otherwise what it makes now.
   Shared get(const std::string& name, const std::function<engine::Mesh()>& make);
+  /// The hull that `make` made of these points, which share() returned, while a shape has it; otherwise what it makes
+  /// now.
+  Shared hullOf(const Shared& points, const std::function<engine::Mesh()>& make);
   /// How often `make` was called.
   std::int64_t loads() const { return loads_; }
   /// Meshes that shapes have.
@@ -30,6 +33,10 @@ class MeshPool {
   using Weak = std::weak_ptr<const engine::Mesh>;
   std::map<std::string, Weak, std::less<>> named_;
   std::multimap<std::uint64_t, Weak> all_;  ///< by the hash of their numbers
+  struct Hull {
+    Weak points, hull;
+  };
+  std::map<const engine::Mesh*, Hull> hulls_;  ///< by their points
   std::int64_t loads_ = 0;
   std::size_t sweepAt_ = 16;  ///< number of entries at which those of ended meshes are removed
 };

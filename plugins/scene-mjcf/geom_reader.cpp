@@ -91,15 +91,8 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
 
 engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
   const Mesh& mesh = meshes_.get(a, unsupported_);
-  engine::Mass mass = mjcf::meshMass(mesh.surface, weight, geom);
-  constexpr double kSame = 1e-6;  // relative
-  const Weight byVolume{1, std::nullopt};
-  if (!compiler_.exactMeshInertia() && mjcf::meshMass(mesh.surface, byVolume, geom).mass <
-                                           (1 - kSame) * mjcf::meshMass(*mesh.collider.mesh, byVolume, geom).mass)
-    unsupported_.add(geom,
-                     "the mass of a <mesh> that is not convex is exact, as with exactmeshinertia; MuJoCo 2.2.2 "
-                     "estimates it");
-  return mass;
+  const MeshInertia usual = compiler_.exactMeshInertia() ? MeshInertia::exact : MeshInertia::estimated;
+  return mjcf::meshMass(mesh.solid(), weight, geom, mesh.inertia.value_or(usual));
 }
 
 void GeomReader::contact(Attributes& a, Geom& g) const {
@@ -135,7 +128,7 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
   }
   if (type != "mesh" && a.has("mesh")) {
     const Weight byVolume{1, std::nullopt};
-    const EquivalentBox box = equivalentBox(mjcf::meshMass(meshes_.get(a, unsupported_).surface, byVolume, g.from));
+    const EquivalentBox box = equivalentBox(meshMass(a, byVolume, g.from));
     g.pose = compose(g.pose, box.pose);
     size = a.number("fitscale", 1) * fittedSize(type, box.halfEdges);
   }
@@ -144,11 +137,11 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
   if (!(size.head(needed).array() > 0).all())
     throw g.from.error(fmt::format("the 'size' of {} {} needs {} above 0", type == "ellipsoid" ? "an" : "a", type,
                                    needed == 1 ? "a length" : fmt::format("{} lengths", needed)));
-  g.shape = shape(a, type, size);
+  shape(a, type, size, g);
 }
 
-ShapeDescription GeomReader::shape(Attributes& a, const std::string& type, const Vec3& size) {
-  ShapeDescription s;
+void GeomReader::shape(Attributes& a, const std::string& type, const Vec3& size, Geom& g) {
+  ShapeDescription& s = g.shape;
   if (type == "box" || type == "ellipsoid") {
     s.shape = Shape::box;
     s.lengths = 2 * size;
@@ -162,9 +155,10 @@ ShapeDescription GeomReader::shape(Attributes& a, const std::string& type, const
   } else if (type == "plane") {
     s.shape = Shape::plane;
   } else {
-    s = meshes_.get(a, unsupported_).collider;
+    const Mesh& mesh = meshes_.get(a, unsupported_);
+    s.shape = mesh.hull ? Shape::convex : Shape::mesh;
+    s.mesh = mesh.hull ? mesh.hull : mesh.surface;
   }
-  return s;
 }
 
 }  // namespace spark::mjcf

@@ -24,7 +24,7 @@ class GeomReader {
   void contact(Attributes& a, Geom& geom) const;
   engine::Mass meshMass(Attributes& a, const Weight& weight, const Element& geom);
   void place(Attributes& a, const std::string& type, const Pose& frame, Geom& geom);
-  engine::ShapeDescription shape(Attributes& a, const std::string& type, const Vec3& size);
+  void shape(Attributes& a, const std::string& type, const Vec3& size, Geom& geom);
 
   const Compiler& compiler_;
   Meshes& meshes_;

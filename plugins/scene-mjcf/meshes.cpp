@@ -50,7 +50,9 @@ void Meshes::add(Attributes& a, const std::string& folder, const Compiler& compi
     const std::size_t slash = m.file.rfind('/'), start = slash == std::string::npos ? 0 : slash + 1;
     name = m.file.substr(start, m.file.rfind('.') - start);
   }
-  a.ignore({"smoothnormal", "texcoord", "normal", "maxhullvert", "content_type", "inertia"});
+  // What newer versions add.
+  m.inertia = a.word("inertia", {"", "legacy", "exact", "convex", "shell"}, "");
+  a.ignore({"smoothnormal", "texcoord", "normal", "maxhullvert", "content_type"});
   a.finish();
   assets_[name] = std::move(m);
 }
@@ -61,7 +63,7 @@ const Mesh& Meshes::get(Attributes& a, Unsupported& unsupported) {
   if (found == assets_.end()) throw a.element().error(fmt::format("there is no <mesh> '{}'", name));
   Asset& m = found->second;
   if (!m.loaded) load(m, unsupported);
-  numbers_ += m.loaded->surface.vertices.size() + m.loaded->surface.triangles.size();
+  numbers_ += m.loaded->surface->vertices.size() + m.loaded->surface->triangles.size();
   if (numbers_ > kMaxMeshNumbers)
     throw a.element().error(fmt::format("the meshes of all geoms have more than {} numbers", kMaxMeshNumbers));
   return *m.loaded;
@@ -79,29 +81,29 @@ engine::Mesh Meshes::surfaceOf(const Asset& m) const {
 }
 
 void Meshes::load(Asset& m, Unsupported& unsupported) {
-  Mesh mesh;
-  mesh.surface = surfaceOf(m);
+  engine::Mesh surface = surfaceOf(m);
   // In single precision at each stage, as in MuJoCo.
   const auto rounded = [](const Vec3& at) { return Vec3(at.cast<float>().cast<double>()); };
-  std::vector<double>& v = mesh.surface.vertices;
+  std::vector<double>& v = surface.vertices;
   for (std::size_t i = 0; i + 2 < v.size(); i += 3) {
     Eigen::Map<Vec3> at(v.data() + i);
     const Vec3 moved = rounded(rounded(at) - m.origin);
     at = rounded(rounded(m.rotation.transpose() * moved).cwiseProduct(m.scale));
     if (!at.allFinite()) throw m.from.error("expected vertices of finite numbers");
   }
-  engine::Mesh hull;
-  mesh.collider.shape = engine::Shape::convex;
+  Mesh mesh;
   try {
-    hull = meshes::hullOf(v);
+    mesh.hull = std::make_shared<const engine::Mesh>(meshes::hullOf(v));
   } catch (const Error& e) {
-    if (mesh.surface.triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
-    unsupported.add(m.from, "a flat <mesh> has no convex hull: its triangles collide");
-    hull = mesh.surface;
-    mesh.collider.shape = engine::Shape::mesh;
+    if (surface.triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
+    unsupported.add(m.from, "a flat <mesh> has no convex hull: its triangles collide, on bodies that do not move");
   }
-  if (mesh.surface.triangles.empty()) mesh.surface = hull;
-  mesh.collider.mesh = std::make_shared<const engine::Mesh>(std::move(hull));
+  mesh.surface = surface.triangles.empty() ? mesh.hull : std::make_shared<const engine::Mesh>(std::move(surface));
+  mesh.weighsAsHull = m.inertia == "convex";
+  if (m.inertia == "exact" || m.inertia == "convex") mesh.inertia = MeshInertia::exact;
+  if (m.inertia == "legacy") mesh.inertia = MeshInertia::legacy;
+  if (m.inertia == "shell") mesh.inertia = MeshInertia::shell;
+  if (mesh.hull) surfaces_[mesh.hull.get()] = mesh.surface;
   m.loaded = std::move(mesh);
 }
 

@@ -1,5 +1,7 @@
 #include "mjcf_importer.h"
 
+#include <fmt/format.h>
+
 #include "api/files.h"
 #include "meshes/mesh_file.h"
 #include "robot/builder.h"
@@ -26,8 +28,14 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
   auto& files = kernel().root().require<IFileServer>();
   mjcf::Unsupported unsupported;
   mjcf::Document document(std::string(file), [&](const std::string& name) { return files.read(name); });
-  const mjcf::Model model = mjcf::readModel(
-      document, [&](const std::string& name) { return meshes::readMesh(name, files.read(name)); }, unsupported);
+  const auto readMesh = [&](const std::string& name) {
+    std::vector<std::string> leftOut;
+    engine::Mesh mesh = meshes::readMesh(name, files.read(name), &leftOut);
+    for (const std::string& what : leftOut)
+      unsupported.add(document.root(), fmt::format("the mesh '{}' has {}, which do not collide", name, what));
+    return mesh;
+  };
+  const mjcf::Model model = mjcf::readModel(document, readMesh, unsupported);
   mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, unsupported);
   builder.build(root);
   ++imports_;

@@ -40,6 +40,7 @@ Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsup
 Model Reader::read() {
   const Element root = document_.root();
   model_.name = root.node.attribute("model").as_string("model");
+  model_.meshesAreHulls = true;
   model_.bodies.emplace_back();
   model_.bodies.front().from = root;
   globalPoses_.emplace_back();
@@ -55,6 +56,7 @@ Model Reader::read() {
     if (std::find(std::begin(kSections), std::end(kSections), e.tag()) == std::end(kSections) &&
         !kNotSimulated.contains(e.tag()))
       unsupported_.element(e);
+  model_.surfaces = meshes_.surfaces();
   chooseCollisions();
   nameUnknown(document_, unsupported_);
   return std::move(model_);

@@ -55,7 +55,7 @@ constexpr Word kVocabulary[] = {
     {"element", "tuple", "", "objtype objname prm"},
     {"default", "mujoco default", "class", ""},
     {"asset", kSection, "", ""},
-    {"mesh", "asset default", "name class file vertex face scale refpos refquat",
+    {"mesh", "asset default", "name class file vertex face scale refpos refquat inertia",
      "normal texcoord smoothnormal content_type maxhullvert"},
     {"texture", "asset", "",
      "name class type colorspace content_type file gridsize gridlayout fileright fileleft fileup filedown filefront "

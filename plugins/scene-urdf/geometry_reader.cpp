@@ -133,6 +133,8 @@ GeometryReader::ReadHull GeometryReader::hullOf(const Element& e, const std::str
     FoundMesh found = readMesh_(file);
     if (!found.insteadOf.empty())
       unsupported_.add(e, fmt::format("the mesh '{}' is not there: '{}' is read in its place", file, found.insteadOf));
+    for (const std::string& what : found.leftOut)
+      unsupported_.add(e, fmt::format("the mesh '{}' has {}, which do not collide", file, what));
     mesh = std::move(found.mesh);
   } catch (const Error& error) {
     return {std::nullopt, fmt::format("cannot read the mesh '{}': {}", file, error.what())};
@@ -141,11 +143,20 @@ GeometryReader::ReadHull GeometryReader::hullOf(const Element& e, const std::str
   if (numbers_ > mjcf::kMaxMeshNumbers)
     return {std::nullopt, fmt::format("the meshes of all links have more than {} numbers", mjcf::kMaxMeshNumbers)};
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) mesh.vertices[i] *= scale[static_cast<int>(i % 3)];
+  // A mirrored triangle is seen from its other side.
+  if (scale.prod() < 0)
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t], mesh.triangles[t + 1]);
+  const auto surface = std::make_shared<const engine::Mesh>(std::move(mesh));
+  const bool hasTriangles = !surface->triangles.empty();
   ShapeDescription s{.shape = Shape::convex};
   try {
-    s.mesh = std::make_shared<const engine::Mesh>(meshes::hullOf(std::move(mesh.vertices)));
+    s.mesh = std::make_shared<const engine::Mesh>(meshes::hullOf(surface->vertices));
+    if (hasTriangles) surfaces_[s.mesh.get()] = surface;
   } catch (const Error& error) {
-    return {std::nullopt, fmt::format("the mesh '{}' has no convex hull: {}", file, error.what())};
+    const bool isFlat = hasTriangles && meshes::hasArea(*surface);
+    if (!isFlat) return {std::nullopt, fmt::format("the mesh '{}' has no convex hull: {}", file, error.what())};
+    s.shape = Shape::mesh;
+    s.mesh = surface;
   }
   return {std::move(s), ""};
 }

@@ -19,6 +19,8 @@ class GeometryReader {
   GeometryReader(const Element& root, const ReadMesh& readMesh, Unsupported& unsupported);
   /// Adds the shapes of a link to its body.
   void read(const Element& link, mjcf::Body& body);
+  /// Of the meshes that were read.
+  const mjcf::Surfaces& surfaces() const { return surfaces_; }
 
  private:
   /// A mesh of a file, with its size; or why there is none.
@@ -40,7 +42,8 @@ class GeometryReader {
   Unsupported& unsupported_;
   std::map<std::string, Color, std::less<>> materials_;  ///< colours by name
   std::map<std::string, ReadHull, std::less<>> meshes_;  ///< by file and scale
-  std::size_t numbers_ = 0;                              ///< of all meshes
+  mjcf::Surfaces surfaces_;
+  std::size_t numbers_ = 0;  ///< of all meshes
 };
 
 }  // namespace spark::urdf

@@ -27,16 +27,23 @@ std::size_t commonEnd(const std::vector<std::string>& a, const std::vector<std::
 
 }  // namespace
 
+FoundMesh MeshFinder::read(const std::string& resource, const std::string& insteadOf) {
+  std::vector<std::string> leftOut;
+  FoundMesh out(meshes::readMesh(resource, files_.read(resource), &leftOut), insteadOf);
+  out.leftOut = std::move(leftOut);
+  return out;
+}
+
 FoundMesh MeshFinder::read(const std::string& name) {
   for (const std::string& candidate : meshNames(of_, name))
-    if (files_.exists(candidate)) return meshes::readMesh(candidate, files_.read(candidate));
+    if (files_.exists(candidate)) return read(candidate, "");
   const std::string other = similar(name);
   if (other.empty())
     throw Error(
         fmt::format("there is no such file in the folders around '{}': give the folder of its package with "
                     "--scene-path",
                     of_));
-  return {meshes::readMesh(other, files_.read(other)), other};
+  return read(other, other);
 }
 
 std::string MeshFinder::similar(const std::string& name) {

@@ -21,6 +21,7 @@ class MeshFinder {
   FoundMesh read(const std::string& name);
 
  private:
+  FoundMesh read(const std::string& resource, const std::string& insteadOf);
   std::string similar(const std::string& name);
   void list();
   void list(const std::filesystem::path& folder, const std::filesystem::path& without, const std::string& prefix);

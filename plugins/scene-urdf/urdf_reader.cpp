@@ -74,6 +74,7 @@ mjcf::Model Reader::read() {
   readLinks();
   readJoints();
   placeAll(rootLink());
+  model_.surfaces = geometry_.surfaces();
   mjcf::weighLightBodies(model_, "a <link>", unsupported_);  // links that only connect joints often have none
   GazeboReader(root_, model_, unsupported_).apply();
   AgentParts(root_, model_, unsupported_).add();

@@ -22,7 +22,8 @@ enum class Base {
 struct FoundMesh {
   FoundMesh(engine::Mesh m, std::string name = "") : mesh(std::move(m)), insteadOf(std::move(name)) {}
   engine::Mesh mesh;
-  std::string insteadOf;  ///< the file that was taken in place of one that is not there; "": it is there
+  std::vector<std::string> leftOut{};  ///< what of the file is not in the mesh, such as "3 lines"
+  std::string insteadOf;               ///< the file that was taken in place of one that is not there; "": it is there
 };
 /// A mesh by the name that the file gives it. Throws Error.
 using ReadMesh = std::function<FoundMesh(const std::string& file)>;

@@ -134,9 +134,12 @@ void GeometryReader::count(const Node& node, const engine::Mesh& mesh) {
                                  mjcf::kMaxMeshNumbers));
 }
 
-/// The convex hull of a mesh, scaled.
+/// The convex hull of a mesh, scaled; a flat one itself.
 ShapeDescription GeometryReader::hull(const Node& node, const Vec3& scale) {
-  engine::Mesh mesh = hullOf(node);
+  const auto [known, isNew] = shapes_.try_emplace({&node, {scale.x(), scale.y(), scale.z()}});
+  ShapeDescription& s = known->second;
+  if (!isNew && s.mesh) return s;
+  engine::Mesh mesh = meshOf(node);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     mesh.vertices[i] *= scale[static_cast<int>(i % 3)];
     if (!std::isfinite(mesh.vertices[i])) throw node.element().error("expected vertices of finite numbers");
@@ -144,23 +147,29 @@ ShapeDescription GeometryReader::hull(const Node& node, const Vec3& scale) {
   // A mirrored triangle is seen from its other side.
   if (scale.prod() < 0)
     for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t], mesh.triangles[t + 1]);
-  ShapeDescription s{.shape = Shape::convex};
-  s.mesh = std::make_shared<const engine::Mesh>(std::move(mesh));
+  const auto surface = std::make_shared<const engine::Mesh>(std::move(mesh));
+  const bool hasTriangles = !surface->triangles.empty();
+  s.shape = Shape::convex;
+  try {
+    s.mesh = std::make_shared<const engine::Mesh>(meshes::hullOf(surface->vertices));
+    if (hasTriangles) surfaces_[s.mesh.get()] = surface;
+  } catch (const Error& error) {
+    if (!hasTriangles || !meshes::hasArea(*surface))
+      throw Error(fmt::format("{}: the {} has no convex hull", node.element().where(), node.type), error);
+    s.shape = Shape::mesh;
+    s.mesh = surface;
+  }
   return s;
 }
 
-const engine::Mesh& GeometryReader::hullOf(const Node& node) {
-  if (const auto known = hulls_.find(&node); known != hulls_.end()) return known->second;
+const engine::Mesh& GeometryReader::meshOf(const Node& node) {
+  if (const auto known = meshes_.find(&node); known != meshes_.end()) return known->second;
   Fields f(node, r_.unsupported);
   engine::Mesh mesh = node.type == "Mesh" ? meshFile(f) : faces(f);
+  if (!f.flag("ccw", true))
+    for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t], mesh.triangles[t + 1]);
   count(node, mesh);
-  for (const double v : mesh.vertices)
-    if (!std::isfinite(v)) throw node.element().error("expected vertices of finite numbers");
-  try {
-    return hulls_.emplace(&node, meshes::hullOf(std::move(mesh.vertices))).first->second;
-  } catch (const Error& error) {
-    throw Error(fmt::format("{}: the {} has no convex hull", node.element().where(), node.type), error);
-  }
+  return meshes_.emplace(&node, std::move(mesh)).first->second;
 }
 
 engine::Mesh GeometryReader::meshFile(Fields& f) {
@@ -173,7 +182,7 @@ engine::Mesh GeometryReader::meshFile(Fields& f) {
   }
 }
 
-/// The hull needs no faces: they are not read.
+/// Polygons become fans of triangles. A polygon that names a point that is not there is left out.
 engine::Mesh GeometryReader::faces(Fields& f) {
   const Node* const coordinate = f.child("coord");
   if (!coordinate) throw f.error("coord", "expected a node Coordinate for 'coord' of IndexedFaceSet");
@@ -185,7 +194,28 @@ engine::Mesh GeometryReader::faces(Fields& f) {
                                    numbers ? numbers->size() : 0));
   points.ignore({"name"});
   points.finish();
-  return {*numbers, {}};
+  engine::Mesh mesh{*numbers, {}};
+  const auto count = static_cast<double>(numbers->size() / 3);
+  std::vector<std::uint32_t> polygon;
+  bool whole = true;
+  const auto finish = [&] {
+    if (!whole) r_.ignore(f.node(), "a polygon of 'coordIndex' names a point that is not there: it is left out");
+    for (std::size_t i = 2; whole && i < polygon.size(); ++i)
+      for (const std::size_t corner : {std::size_t{0}, i - 1, i}) mesh.triangles.push_back(polygon[corner]);
+    polygon.clear();
+    whole = true;
+  };
+  if (const std::vector<double>* const indices = f.numbers("coordIndex"))
+    for (const double index : *indices) {
+      if (index < 0)
+        finish();
+      else if (index < count && index == std::floor(index))
+        polygon.push_back(static_cast<std::uint32_t>(index));
+      else
+        whole = false;
+    }
+  finish();
+  return mesh;
 }
 
 std::optional<std::array<double, 4>> GeometryReader::colorOf(const Node& appearance) {

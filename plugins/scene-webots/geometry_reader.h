@@ -2,7 +2,9 @@
 /// \file
 /// Reads shapes: what collides and what is seen.
 
+#include <array>
 #include <map>
+#include <utility>
 
 #include "reading.h"
 
@@ -21,12 +23,14 @@ class GeometryReader {
   /// A bounding object: a geometry, a Shape, or a Group or Pose of them. `density`: of its parts [kg/m^3]; their masses
   /// are those of the geoms. Throws Error.
   void bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body);
+  /// Of the meshes that were read.
+  const mjcf::Surfaces& surfaces() const { return surfaces_; }
 
  private:
   std::optional<engine::ShapeDescription> geometry(const Node& node, const Frame& frame, bool collides);
   void count(const Node& node, const engine::Mesh& mesh);
   engine::ShapeDescription hull(const Node& node, const Vec3& scale);
-  const engine::Mesh& hullOf(const Node& node);
+  const engine::Mesh& meshOf(const Node& node);
   engine::Mesh meshFile(Fields& fields);
   engine::Mesh faces(Fields& fields);
   std::optional<std::array<double, 4>> colorOf(const Node& appearance);
@@ -34,8 +38,10 @@ class GeometryReader {
 
   Reading& r_;
   const ReadMesh& readMesh_;
-  std::map<const Node*, engine::Mesh> hulls_;  ///< without their scales
-  std::size_t numbers_ = 0;                    ///< of all meshes
+  std::map<const Node*, engine::Mesh> meshes_;                                                ///< without their scales
+  std::map<std::pair<const Node*, std::array<double, 3>>, engine::ShapeDescription> shapes_;  ///< with them
+  mjcf::Surfaces surfaces_;
+  std::size_t numbers_ = 0;  ///< of all meshes
 };
 
 }  // namespace spark::webots

@@ -67,13 +67,20 @@ void WebotsImporter::import(std::string_view file, Node& root, const List& argum
       [&](const std::string& name) { return files.exists(name) ? std::optional(files.read(name)) : std::nullopt; },
       [&](const std::string& request) { return templates.ask(request); }, folders_,
       [&](const std::string& name) { return index.called(name); }};
+  const auto readFile = [&](const std::string& name) {
+    std::vector<std::string> leftOut;
+    engine::Mesh mesh = meshes::readMesh(name, files.read(name), &leftOut);
+    if (!leftOut.empty())
+      kernel().log().warning("{}: the mesh '{}' has {}, which do not collide", file, name, fmt::join(leftOut, ", "));
+    return mesh;
+  };
   const webots::ReadMesh readMesh = [&](const std::string& of, const std::string& url) {
     const std::vector<std::string> candidates = webots::fileNames(of, url, folders_);
     for (const std::string& candidate : candidates)
-      if (files.exists(candidate)) return meshes::readMesh(candidate, files.read(candidate));
+      if (files.exists(candidate)) return readFile(candidate);
     if (const auto& others = index.called(url.substr(url.find_last_of("/\\") + 1)); !others.empty()) {
       kernel().log().info("{}: the mesh '{}' is not in its place: '{}' is read", of, url, others.front());
-      return meshes::readMesh(others.front(), files.read(others.front()));
+      return readFile(others.front());
     }
     throw Error(fmt::format("there is no such file; looked for {}", fmt::join(candidates, ", ")));
   };

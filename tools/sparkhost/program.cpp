@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 
 #include "convert.h"
 #include "crash_report.h"
@@ -28,7 +29,35 @@ namespace {
 
 spark::Kernel* stopOnSignal = nullptr;
 
-extern "C" void onSignal(int) { stopOnSignal->requestStop(); }
+volatile std::sig_atomic_t isLoading = 0;  // configs, scenes and meshes are read
+
+extern "C" void onSignal(int) {
+  stopOnSignal->requestStop();
+  // A config stops at its next line; what it has called, such as the reader of a large file, does not ask.
+  if (isLoading) ::alarm(1);
+}
+
+extern "C" void onAlarm(int) {
+  if (!isLoading) return;
+  constexpr std::string_view kText = "sparkhost: stopped by a signal while loading\n";
+  if (::write(STDERR_FILENO, kText.data(), kText.size()) < 0) ::_exit(2);
+  ::_exit(2);
+}
+
+/// While it exists a signal that ends the run ends it also where nothing asks for it, after a second. There is no run
+/// yet, and so no result.
+struct Loading {
+  Loading() {
+    std::signal(SIGALRM, onAlarm);
+    isLoading = 1;
+  }
+  ~Loading() {
+    isLoading = 0;
+    ::alarm(0);
+  }
+  Loading(const Loading&) = delete;
+  Loading& operator=(const Loading&) = delete;
+};
 
 }  // namespace
 
@@ -114,8 +143,11 @@ int run(int argc, char** argv) {
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());
     HangWatch::install(host->kernel());
-    host->build();
-    if (!options.from.empty()) host->goOn();
+    {
+      const Loading loading;
+      host->build();
+      if (!options.from.empty()) host->goOn();
+    }
     if (options.check) checkLog(host->kernel());
     if (!options.hashes.empty()) HashLog::install(host->kernel(), options.hashes, options.hashEvery);
     if (!options.record.empty()) host->record(options.record);

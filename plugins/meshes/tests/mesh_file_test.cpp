@@ -14,25 +14,12 @@
 #include "../hull.h"
 #include "spark/error.h"
 #include "tetrahedron.h"
+#include "volume.h"
 
 using namespace spark;
 using meshes::hullOf;
 using meshes::readMesh;
 using namespace spark::test;
-
-namespace {
-
-double volumeOf(const engine::Mesh& m) {
-  double volume = 0;
-  for (std::size_t t = 0; t < m.triangles.size(); t += 3) {
-    Mat3 corners;
-    for (std::size_t i = 0; i < 3; ++i) corners.col(static_cast<int>(i)) = m.vertex(m.triangles[t + i]);
-    volume += corners.determinant() / 6;
-  }
-  return volume;
-}
-
-}  // namespace
 
 TEST_CASE("A mesh is the same in each format: obj, stl, dae, glb") {
   const std::pair<const char*, std::string> files[] = {

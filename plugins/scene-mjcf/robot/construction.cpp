@@ -14,11 +14,10 @@ bool provides(Kernel& kernel, const char* className) {
   return provider;
 }
 
-Leaf* extensionOf(Leaf& element, const char* className) {
-  constexpr const char* kName = "mujoco";
+Leaf* extensionOf(Leaf& element, const char* className, const char* name) {
   Node& node = *element.asNode();
-  if (Leaf* const there = node.child(kName)) return there;
-  return provides(element.kernel(), className) ? &node.create(className, kName) : nullptr;
+  if (Leaf* const there = node.child(name)) return there;
+  return provides(element.kernel(), className) ? &node.create(className, name) : nullptr;
 }
 
 Node& Construction::transform(Node& parent, const std::string& name, const Pose& local) {

@@ -51,9 +51,9 @@ struct Construction {
 /// True if there is a class of this name; the plugin that provides it is used from now on.
 bool provides(Kernel& kernel, const char* className);
 
-/// The child `mujoco` of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin provides its
-/// class.
-Leaf* extensionOf(Leaf& element, const char* className);
+/// The child `mujoco`, or `name`, of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin
+/// provides its class.
+Leaf* extensionOf(Leaf& element, const char* className, const char* name = "mujoco");
 
 // Values for properties and methods.
 inline List toList(const Vec3& v) { return {v.x(), v.y(), v.z()}; }

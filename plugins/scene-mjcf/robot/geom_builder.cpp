@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "api/appearance.h"
+#include "meshes/hull.h"
 #include "spark/access.h"
 
 namespace spark::mjcf {
@@ -26,6 +27,12 @@ List matrix(const Mat3& r) {
 
 bool hasMesh(const ShapeDescription& s) { return s.shape == Shape::mesh || s.shape == Shape::convex; }
 
+List trianglesOf(const engine::Mesh& mesh) {
+  List out;
+  for (const std::uint32_t t : mesh.triangles) out.emplace_back(static_cast<std::int64_t>(t));
+  return out;
+}
+
 /// Sets a collider's shape; `pose`: in its body, or in the world.
 void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
   switch (s.shape) {
@@ -44,17 +51,22 @@ void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
       callMethod(collider, "setParams", List{normal.x(), normal.y(), normal.z(), normal.dot(pose.position)});
       return;
     }
-    default: {
+    default:
       setProperty(collider, "vertices", List(s.mesh->vertices.begin(), s.mesh->vertices.end()));
-      if (s.shape == Shape::convex) break;  // its hull is known by its corners
-      List triangles;
-      for (const std::uint32_t t : s.mesh->triangles) triangles.emplace_back(static_cast<std::int64_t>(t));
-      setProperty(collider, "triangles", triangles);
+      // A hull is known by its corners.
+      if (s.shape == Shape::mesh) setProperty(collider, "triangles", trianglesOf(*s.mesh));
       break;
-    }
   }
   callMethod(collider, "setRotation", matrix(pose.rotation));
   callMethod(collider, "setLocalPosition", toList(pose.position));
+}
+
+/// Sets what MuJoCo makes the hull of a collider of, so that its hull is the same as in MuJoCo alone.
+void setSurface(Node& collider, const engine::Mesh& surface) {
+  Leaf* const mesh = extensionOf(collider, "MujocoMesh", "mujocoMesh");
+  if (!mesh) return;
+  setProperty(*mesh, "vertices", List(surface.vertices.begin(), surface.vertices.end()));
+  setProperty(*mesh, "triangles", trianglesOf(surface));
 }
 
 void setContact(Node& collider, const Geom& g) {
@@ -103,18 +115,45 @@ void GeomBuilder::makeGeoms(PlacedBody& p) {
   }
 }
 
+const engine::Mesh* GeomBuilder::sourceOf(const ShapeDescription& hull) const {
+  const auto found = c_.model.surfaces.find(hull.mesh.get());
+  return found == c_.model.surfaces.end() ? nullptr : found->second.get();
+}
+
+ShapeDescription GeomBuilder::collisionShape(const Geom& g, bool moves) {
+  const engine::Mesh* const surface = g.shape.shape == Shape::convex ? sourceOf(g.shape) : nullptr;
+  if (!surface || c_.model.meshesAreHulls || meshes::isConvex(*surface, *g.shape.mesh)) return g.shape;
+  if (moves) {
+    c_.unsupported.add(g.from,
+                       fmt::format("a <{}> that moves and is not convex collides as its convex hull", g.from.tag()));
+    return g.shape;
+  }
+  ShapeDescription out{.shape = Shape::mesh};
+  out.mesh = c_.model.surfaces.at(g.shape.mesh.get());
+  return out;
+}
+
 void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
+  const bool moves = p.carrier != 0;
+  if (g.shape.shape == Shape::mesh && moves)
+    return c_.unsupported.add(
+        g.from, fmt::format("a <{}> is left out: a flat mesh has no convex hull, and collides only where it does not "
+                            "move",
+                            g.from.tag()));
+  const ShapeDescription shape = collisionShape(g, moves);
   const char* const kinds[] = {"BoxCollider",      "SphereCollider", "CapsuleCollider",
                                "CylinderCollider", "PlaneCollider",  "",
                                "TriMeshCollider",  "ConvexCollider"};
-  const char* const kind = kinds[static_cast<int>(g.shape.shape)];
+  const char* const kind = kinds[static_cast<int>(shape.shape)];
   Node& parent = c_.nodeOf(p);
   Node& collider = *parent.create(kind, c_.names.collider(parent, g.name)).asNode();
   p.colliders.push_back(&collider);
   if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
     throw Error(fmt::format("there are two geoms '{}'", g.name));
-  setShape(collider, g.shape, p.carrier == 0 ? compose(p.world, g.pose) : c_.inNode(p, g.pose));
+  setShape(collider, shape, moves ? c_.inNode(p, g.pose) : compose(p.world, g.pose));
   setContact(collider, g);
+  const engine::Mesh* const surface = c_.model.meshesAreHulls ? sourceOf(shape) : nullptr;
+  if (surface && *surface != *shape.mesh) setSurface(collider, *surface);
   setProperty(collider, "part", p.part);
 }
 

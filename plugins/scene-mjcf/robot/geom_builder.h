@@ -16,6 +16,10 @@ class GeomBuilder {
 
  private:
   void makeGeoms(PlacedBody& b);
+  /// What a convex shape is the hull of; nullptr: itself.
+  const engine::Mesh* sourceOf(const engine::ShapeDescription& hull) const;
+  /// The shape of its collider. Where meshes are not hulls: what does not move keeps its hollows.
+  engine::ShapeDescription collisionShape(const Geom& geom, bool moves);
   void makeCollider(const Geom& geom, PlacedBody& b);
   void makeVisible(const Geom& geom, const PlacedBody& b);
   std::string materialOf(const std::array<double, 4>& color);

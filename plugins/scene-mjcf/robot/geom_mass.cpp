@@ -1,5 +1,9 @@
 #include "geom_mass.h"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
 #include "api/mass.h"
 
 namespace spark::mjcf {
@@ -9,31 +13,100 @@ using engine::ShapeDescription;
 
 namespace {
 
-/// Of density 1 (Eberly, "Polyhedral Mass Properties", 2002, as sums over tetrahedra from the origin).
-engine::Mass meshVolume(const engine::Mesh& s) {
-  double volume = 0;
-  Vec3 first = Vec3::Zero();
-  Mat3 second = Mat3::Zero();  // integral of x x^T
-  for (std::size_t t = 0; t + 2 < s.triangles.size(); t += 3) {
-    Mat3 corners;
-    for (int i = 0; i < 3; ++i) corners.col(i) = s.vertex(s.triangles[t + static_cast<std::size_t>(i)]);
-    const double det = corners.determinant();
-    const Vec3 sum = corners.rowwise().sum();
-    volume += det / 6;
-    first += det / 24 * sum;
-    second += det / 120 * (corners * corners.transpose() + sum * sum.transpose());
+Mat3 cornersOf(const engine::Mesh& m, std::size_t triangle) {
+  Mat3 out;
+  for (int i = 0; i < 3; ++i) out.col(i) = m.vertex(m.triangles[3 * triangle + static_cast<std::size_t>(i)]);
+  return out;
+}
+
+/// The mean of the triangles, each with the weight of its area.
+Vec3 middleOf(const engine::Mesh& m) {
+  double area = 0;
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t t = 0; t < m.triangles.size() / 3; ++t) {
+    const Mat3 c = cornersOf(m, t);
+    const double own = (c.col(1) - c.col(0)).cross(c.col(2) - c.col(0)).norm() / 2;
+    area += own;
+    sum += own / 3 * c.rowwise().sum();
   }
-  if (volume < 0) volume = -volume, first = -first, second = -second;
-  if (!(volume > 0)) return {0, Vec3::Zero(), Mat3::Zero()};
-  const Vec3 center = first / volume;
-  second -= volume * center * center.transpose();
-  return {volume, center, Mat3(second.trace() * Mat3::Identity() - second)};
+  return area > 0 ? Vec3(sum / area) : sum;
+}
+
+/// Integrals over a mesh of density 1.
+struct Sums {
+  double volume = 0;
+  Vec3 first = Vec3::Zero();   ///< of x - origin
+  Mat3 second = Mat3::Zero();  ///< of (x - origin) (x - origin)^T
+};
+
+/// As sums over tetrahedra from `origin` to the triangles (Eberly, "Polyhedral Mass Properties", 2002). `positive`:
+/// each counts as it is, not less where the triangle looks at the origin.
+Sums solidSums(const engine::Mesh& m, const Vec3& origin, bool positive) {
+  Sums s;
+  for (std::size_t t = 0; t < m.triangles.size() / 3; ++t) {
+    const Mat3 c = cornersOf(m, t).colwise() - origin;
+    const double det = positive ? std::abs(c.determinant()) : c.determinant();
+    const Vec3 sum = c.rowwise().sum();
+    s.volume += det / 6;
+    s.first += det / 24 * sum;
+    s.second += det / 120 * (c * c.transpose() + sum * sum.transpose());
+  }
+  return s;
+}
+
+/// Of the triangles alone; the volume is their area.
+Sums shellSums(const engine::Mesh& m) {
+  Sums s;
+  for (std::size_t t = 0; t < m.triangles.size() / 3; ++t) {
+    const Mat3 c = cornersOf(m, t);
+    const double area = (c.col(1) - c.col(0)).cross(c.col(2) - c.col(0)).norm() / 2;
+    const Vec3 sum = c.rowwise().sum();
+    s.volume += area;
+    s.first += area / 3 * sum;
+    s.second += area / 12 * (c * c.transpose() + sum * sum.transpose());
+  }
+  return s;
+}
+
+/// `origin`: that of the sums.
+engine::Mass massOf(Sums s, const Vec3& origin) {
+  if (s.volume < 0) s = {-s.volume, -s.first, -s.second};
+  if (!(s.volume > 0)) return {0, Vec3::Zero(), Mat3::Zero()};
+  const Vec3 center = s.first / s.volume;
+  s.second -= s.volume * center * center.transpose();
+  return {s.volume, origin + center, Mat3(s.second.trace() * Mat3::Identity() - s.second)};
+}
+
+/// The volume of the box with the inertia of `m`.
+double boxVolume(const engine::Mass& m) {
+  double squares = 1;
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(m.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  for (const double moment : moments) squares *= std::max(0.0, 6 * (moments.sum() - 2 * moment) / m.mass);
+  return std::sqrt(squares);
+}
+
+/// Of density 1.
+engine::Mass meshVolume(const engine::Mesh& mesh, MeshInertia inertia) {
+  if (inertia == MeshInertia::exact) return massOf(solidSums(mesh, Vec3::Zero(), false), Vec3::Zero());
+  if (inertia == MeshInertia::shell) return massOf(shellSums(mesh), Vec3::Zero());
+  // The centre is that of the solid as seen from the middle of its surface; all else is as seen from that centre.
+  const Vec3 middle = middleOf(mesh);
+  const Sums fromMiddle = solidSums(mesh, middle, true);
+  if (!(fromMiddle.volume > 0)) return {0, Vec3::Zero(), Mat3::Zero()};
+  const Vec3 center = middle + fromMiddle.first / fromMiddle.volume;
+  const Sums s = solidSums(mesh, center, true);
+  engine::Mass out{s.volume, center, Mat3(s.second.trace() * Mat3::Identity() - s.second)};
+  if (inertia == MeshInertia::legacy || !(s.volume > 0)) return out;
+  const double volume = boxVolume(out);
+  out.inertia *= volume / out.mass;
+  out.mass = volume;
+  return out;
 }
 
 }  // namespace
 
-engine::Mass meshMass(const engine::Mesh& mesh, const Weight& weight, const Element& geom) {
-  engine::Mass m = meshVolume(mesh);
+engine::Mass meshMass(const engine::Mesh& mesh, const Weight& weight, const Element& geom, MeshInertia inertia) {
+  engine::Mass m = meshVolume(mesh, inertia);
   if (!(m.mass > 0)) throw geom.error("the mesh has no volume");
   const double factor = weight.of(m.mass) / m.mass;
   m.mass *= factor;
@@ -51,6 +124,9 @@ engine::Mass shapeMass(const ShapeDescription& s, const Weight& weight, const El
       return physics::capsuleMass(weight.of(physics::capsuleVolume(s.radius, s.length)), s.radius, s.length);
     case Shape::cylinder:
       return physics::cylinderMass(weight.of(physics::cylinderVolume(s.radius, s.length)), s.radius, s.length);
+    case Shape::mesh:
+      if (const engine::Mass unit = meshVolume(*s.mesh, MeshInertia::exact); !(unit.mass > 0)) return unit;  // flat
+      [[fallthrough]];
     default:
       return meshMass(*s.mesh, weight, geom);
   }

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -213,10 +215,15 @@ struct Flags {
   bool sensorNoise = false;  ///< sensors have the noise of their attributes
 };
 
+/// By the mesh of a convex hull: what it is the hull of. Only looked up.
+using Surfaces = std::map<const engine::Mesh*, std::shared_ptr<const engine::Mesh>>;
+
 /// A whole model. bodies[0] is the world; parents come before their children.
 struct Model {
   std::string name;
-  bool selfCollides = true;  ///< false: its bodies do not collide with each other
+  bool selfCollides = true;     ///< false: its bodies do not collide with each other
+  bool meshesAreHulls = false;  ///< static meshes collide as their convex hulls, too
+  Surfaces surfaces;
   std::vector<Option> options;
   std::string collision = "all";  ///< which geoms collide: "predefined" are pairs alone, "dynamic" is without pairs
   Flags flags;

@@ -28,7 +28,7 @@ TEST_CASE("a flat mesh is refused only if its mass is needed") {
 
 TEST_CASE("a mesh can be written in the model, and collides as its convex hull") {
   const auto mesh = [](const std::string& attributes) {
-    return "<mujoco><asset><mesh name='m' " + attributes +
+    return "<mujoco><compiler exactmeshinertia='true'/><asset><mesh name='m' " + attributes +
            "/></asset><worldbody><body><joint/><geom type='mesh' mesh='m' density='6'/></body></worldbody></mujoco>";
   };
   const std::string tetrahedron = "vertex='0 0 0 1 0 0 0 1 0 0 0 1'";
@@ -79,6 +79,29 @@ TEST_CASE("a mesh can be written in the model, and collides as its convex hull")
           {"vertex='0 0 0 1 0 0 0 1 0 0 0 1' refquat='0 0 0 0'", "expected a quaternion that is not 0"}})
       CHECK_THAT(failure(mesh(attributes)), Catch::Contains(message));
   }
+}
+
+TEST_CASE("masses of meshes are MuJoCo's, unless the mesh says how") {
+  const auto mass = [](const std::string& attributes, const std::string& compiler = "") {
+    return Read("<mujoco>" + compiler + "<asset><mesh name='m' " + attributes +
+                "/></asset><worldbody><body><joint/><geom type='mesh' mesh='m' "
+                "density='6'/></body></worldbody></mujoco>")
+        .body(1)
+        .mass;
+  };
+  const std::string tetrahedron = "vertex='0 0 0 1 0 0 0 1 0 0 0 1' ";
+  // Of the box with its inertia.
+  CHECK(mass(tetrahedron).mass == Approx(6 * std::sqrt(0.15) * 0.6));
+  CHECK(mass(tetrahedron, "<compiler exactmeshinertia='true'/>").mass == Approx(1));
+  for (const char* rule : {"exact", "convex", "legacy"})
+    CHECK(mass(tetrahedron + "inertia='" + rule + "'").mass == Approx(1));
+  CHECK(mass(tetrahedron + "inertia='shell'").mass == Approx(6 * (1.5 + std::sqrt(0.75))));
+  // With a dent, which is filled, or counted twice.
+  const std::string dented =
+      "vertex='0 0 0 1 0 0 0 1 0 0 0 1 .1 .1 .1' face='0 2 1 0 1 3 0 3 2 1 2 4 2 3 4 3 1 4' inertia='";
+  CHECK(mass(dented + "exact'").mass == Approx(0.3));
+  CHECK(mass(dented + "convex'").mass == Approx(1));
+  CHECK(mass(dented + "legacy'").mass > 0.31);
 }
 
 TEST_CASE("shapes can be fitted to meshes by their inertia") {

@@ -206,7 +206,7 @@ TEST_CASE("One bad part is left out or mended, and named with its place") {
       {shape("<cylinder radius='1' length='0'/>"), "expected a length above 0 for 'length' of <cylinder>, found '0'"},
       {shape("<mesh filename='missing.stl'/>"),
        "a.urdf:3:1: a <collision> is left out: cannot read the mesh 'missing.stl': there is no such file"},
-      {shape("<mesh filename='a.stl' scale='1 0 1'/>"), "the mesh 'a.stl' has no convex hull"},
+      {shape("<mesh filename='a.stl' scale='1 0 0'/>"), "the mesh 'a.stl' has no convex hull"},
       {shape("<mesh/>"), "expected an attribute 'filename' of <mesh>"},
       {shape("<mesh filename='a.stl' scale='0.001'/>"), "a 'scale' of one number counts for all three directions"},
       {shape("<box size='1 1 1'/><sphere radius='1'/>"), "a <geometry> with several shapes has the first alone"},
