@@ -15,5 +15,5 @@
 SPARK_PLUGIN("effectors", "1.0", "Effectors of robots: joints, motors, forces.", spark::HingeEffector,
              spark::UniversalJointEffector, spark::Hinge2Effector, spark::AngularMotorEffector,
              spark::StiffnessEffector, spark::AgentSyncEffector, spark::ForceEffector, spark::CreateEffector,
-             spark::HMDPEffector, spark::ControlEffector, spark::ActuatorEffector, spark::EngineActuatorEffector, spark::SteeringEffector,
-             spark::SliderEffector)
+             spark::HMDPEffector, spark::ControlEffector, spark::ActuatorEffector, spark::EngineActuatorEffector,
+             spark::SteeringEffector, spark::SliderEffector)
