@@ -170,12 +170,6 @@ struct Writer {
     Pose pose = g.offset;
     const auto m = model.extensions.geoms[index].get<SurfaceNumbers>();
     switch (s.shape) {
-      case Shape::convex:
-        if (m.ellipsoid[0] > 0)
-          put(R"( type="ellipsoid" size="{}")", fmt::join(m.ellipsoid, " "));
-        else
-          put(R"( type="mesh" mesh="m{}")", meshOf.at(s.mesh.get()));
-        break;
       case Shape::box:
         put(R"( type="box" size="{} {} {}")", length(s.lengths.x() / 2), length(s.lengths.y() / 2),
             length(s.lengths.z() / 2));
@@ -200,7 +194,10 @@ struct Writer {
         pose.position += pose.rotation * Vec3(0, 0, s.heightField->low);
         break;
       default:
-        put(R"( type="mesh" mesh="{}")", mesh.empty() ? fmt::format("m{}", meshOf.at(meshFor(index))) : mesh);
+        if (s.shape == Shape::convex && m.ellipsoid[0] > 0)
+          put(R"( type="ellipsoid" size="{}")", fmt::join(m.ellipsoid, " "));
+        else
+          put(R"( type="mesh" mesh="{}")", mesh.empty() ? fmt::format("m{}", meshOf.at(meshFor(index))) : mesh);
         break;
     }
     if (g.body != kNone) pose.position -= model.bodies[g.body].linkOrigin;

@@ -59,7 +59,7 @@ void MujocoActuator::describe(Description<MujocoActuator>& d) {
   d.property("activationRange", &A::get<&N::activationRange>, &A::set<&N::activationRange>).doc("Of the activation.");
   d.property("lengthRange", &A::get<&N::lengthRange>, &A::set<&N::lengthRange>)
       .doc("Lengths of a muscle; none: MuJoCo finds them.");
-  d.property("control", &A::control, &A::setControl).state().doc("The control.");
+  d.property("control", &A::control, &A::setControl).unit("1").state().doc("The control.");
 }
 
 template <auto Member, auto& Names>

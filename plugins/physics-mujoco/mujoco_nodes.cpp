@@ -26,6 +26,7 @@ void MujocoSurface::describe(Description<MujocoSurface>& d) {
       .doc("Distance at which contacts begin.");
   d.property("gap", &S::get<&N::gap>, &S::set<&N::gap>).unit("m").min(0).doc("Part of that distance without force.");
   d.property("solmix", &S::get<&N::solmix>, &S::set<&N::solmix>)
+      .unit("1")
       .min(0)
       .doc("Weight of solref and solimp against those of the other surface.");
   d.property("ellipsoid", &S::get<&N::ellipsoid>, &S::set<&N::ellipsoid>)

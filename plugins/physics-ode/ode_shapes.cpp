@@ -59,6 +59,9 @@ dGeomID OdeHull::probeAt(dGeomID geom, int which) {
   const dReal* const p = dGeomGetPosition(geom);
   dGeomSetPosition(out, p[0], p[1], p[2]);
   dGeomSetRotation(out, dGeomGetRotation(geom));
+  // Outside of a space nothing updates the bounds, by which ODE selects triangles of a mesh.
+  dReal bounds[6];
+  dGeomGetAABB(out, bounds);
   return out;
 }
 

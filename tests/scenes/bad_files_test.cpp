@@ -118,7 +118,7 @@ std::vector<BadFile> badWebots() {
        "c.wbt:", "contains itself"},
       {"missing mesh", "m.wbt", webots("Solid { boundingObject Mesh { url \"none.stl\" } }"),
        "m.wbt:3:24: ", "none.stl"},
-      {"missing PROTO", "m.wbt", webots("None { }"), "m.wbt:3:1: ", "'None' is no node"},
+      {"missing PROTO", "m.wbt", webots("None { }"), "m.wbt:3:1: ", "'None' is empty"},
       {"NaN position", "n.wbt", webots("Solid { translation 0 nan 0 }"), "n.wbt:3:", ""},
       {"infinite position", "n.wbt", webots("Solid { translation 0 1e400 0 }"), "n.wbt:3:", ""},
       {"absurd position", "s.wbt", webots("Solid { translation 1e300 0 0 }"), "s.wbt:3:", "at most 1e+09"},
@@ -132,7 +132,8 @@ void checkAll(const std::vector<BadFile>& files, const char* transactional) {
   ImportHost h;
   h.setTransactional(transactional);
   // Otherwise one bad part is left out, and the file is imported.
-  setProperty(h.kernel.root().require<Leaf>("/sys/server/scene/urdf"), "strict", true);
+  for (const char* importer : {"urdf", "webots"})
+    setProperty(h.kernel.root().require<Leaf>(std::string("/sys/server/scene/") + importer), "strict", true);
   h.folder.write("h.rsg", "(RSG 0 2)(" + repeated(5000, "(importScene i.rsg)") + ")");
   h.folder.write("i.rsg", "(RSG 0 2)((nd Transform))");
   h.step(20);

@@ -10,7 +10,7 @@ from pathlib import Path
 
 LUA = Path(__file__).resolve().parents[3] / "lua"
 # Parts of configs, and those that need a file, another host or a helper.
-OTHERS = {"camera", "convert", "course", "house", "listings", "logplayer", "materials", "naotypes", "referee", "shot_clock", "soccer-house"}
+OTHERS = {"camera", "convert", "course", "house", "listings", "logplayer", "materials", "naotypes", "referee", "robots", "shot_clock", "soccer-house"}
 
 
 def start(config):
