@@ -219,9 +219,9 @@ class NumberModifier : public Modifier {
   void changePose(Signal& signal, std::uint32_t begin, std::uint32_t end, const Event& event) {
     std::array<std::uint32_t, 16> at{};
     if (!numbersIn(signal, begin, end, at)) return;
-    const auto element = [&](int row, int column) { return signal.at(at[static_cast<std::size_t>(4 * row + column)]); };
-    for (int row = 0; row < 3; ++row) {
-      const std::size_t k = static_cast<std::size_t>(4 * row) + 3;
+    const auto element = [&](std::size_t row, std::size_t column) { return signal.at(at[4 * row + column]); };
+    for (std::size_t row = 0; row < 3; ++row) {
+      const std::size_t k = 4 * row + 3;
       if (!changes(k)) continue;
       const double value = element(row, 3).number(), result = change(value, k, event);
       signal.fits(element(row, 3), result) ? signal.set(element(row, 3), result) : warn(value, result);
