@@ -36,7 +36,8 @@ struct AxisNumbers {
 /// The world (MuJoCo's documentation, "option").
 struct OptionNumbers {
   static constexpr std::string_view kKind = "MujocoOptions";
-  static constexpr std::array kIntegrators{"Euler", "implicit", "RK4"}, kCones{"pyramidal", "elliptic"};
+  static constexpr std::array kIntegrators{"Euler", "implicit", "RK4"};
+  static constexpr std::array kCones{"pyramidal", "elliptic"};
   static constexpr std::array kSolvers{"Newton", "PGS", "CG"};
   std::int64_t integrator = 0, cone = 0, solver = 0;  ///< indices of these names
   std::int64_t iterations = 100;                      ///< most of the solver

@@ -502,8 +502,9 @@ MujocoWorld::Saved::Saved(StateReader& in) {
 }
 
 void MujocoWorld::resume(const Saved& saved, const State& state) {
-  if (saved.numbers.size() != static_cast<std::size_t>(m_->nq + 3 * m_->nv + m_->na) ||
-      saved.taken.size() != trees_.links.size() || state.loaded.size() != state.bodies.size())
+  const std::ptrdiff_t numbers = m_->nq + 3 * std::ptrdiff_t{m_->nv} + m_->na;
+  if (std::ssize(saved.numbers) != numbers || saved.taken.size() != trees_.links.size() ||
+      state.loaded.size() != state.bodies.size())
     throw Error(fmt::format("expected the saved state of {} coordinates and {} bodies, found {} numbers and {} bodies",
                             m_->nq, trees_.links.size(), saved.numbers.size(), saved.taken.size()));
   auto from = saved.numbers.begin();

@@ -228,7 +228,9 @@ void spreadPoints(const ShapeDescription& s, std::vector<Vec3>& out) {
   constexpr int kAlong = 8;         // steps along a post
   constexpr std::size_t kMost = 128;
   const auto grid = [&](const Vec3& half) {
-    for (int i = 0; i < 27; ++i) out.push_back(kWithin * half.cwiseProduct(Vec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1)));
+    for (const double z : {-1.0, 0.0, 1.0})
+      for (const double y : {-1.0, 0.0, 1.0})
+        for (const double x : {-1.0, 0.0, 1.0}) out.push_back(kWithin * half.cwiseProduct(Vec3(x, y, z)));
   };
   switch (s.shape) {
     case Shape::box:
