@@ -125,7 +125,7 @@ engine::Mass shapeMass(const ShapeDescription& s, const Weight& weight, const El
     case Shape::cylinder:
       return physics::cylinderMass(weight.of(physics::cylinderVolume(s.radius, s.length)), s.radius, s.length);
     case Shape::mesh:
-      if (const engine::Mass unit = meshVolume(*s.mesh, MeshInertia::exact); !(unit.mass > 0)) return unit;  // flat
+      if (engine::Mass unit = meshVolume(*s.mesh, MeshInertia::exact); !(unit.mass > 0)) return unit;  // flat
       [[fallthrough]];
     default:
       return meshMass(*s.mesh, weight, geom);
