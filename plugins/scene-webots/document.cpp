@@ -109,7 +109,7 @@ Document::Found Document::findIn(const std::string& type, const std::vector<std:
 /// Before EXTERNPROTO, Webots itself looked in all folders below `protos`.
 Document::Found Document::findElsewhere(const Node& node, bool isNamed) {
   if (!from_.called) return {};
-  const Found found = findIn(node.type, from_.called(node.type + ".proto"));
+  Found found = findIn(node.type, from_.called(node.type + ".proto"));
   if (found.proto && (isNamed || !node.yUp))
     unsupported_.add(node.element(), fmt::format("the PROTO '{}' is not in its place: that in '{}' is taken", node.type,
                                                  found.source->file.name));

@@ -195,7 +195,7 @@ engine::Mesh GeometryReader::faces(Fields& f) {
   points.ignore({"name"});
   points.finish();
   engine::Mesh mesh{*numbers, {}};
-  const auto count = static_cast<double>(numbers->size() / 3);
+  const double count = static_cast<double>(numbers->size()) / 3;  // whole, see above
   std::vector<std::uint32_t> polygon;
   bool whole = true;
   const auto finish = [&] {

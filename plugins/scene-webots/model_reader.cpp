@@ -45,7 +45,7 @@ void ModelReader::readTop(const Node& solid, const Frame& around, std::optional<
 
 void ModelReader::readChild(const Node& node, const Frame& frame) {
   r_.visit(node);
-  if (isSolid(node.type)) {
+  if (isSolid(node.type) || !isBaseNode(node.type)) {
     addSolid(node, frame, nullptr);
   } else if (isGroup(node.type)) {
     Fields f(node, r_.unsupported);
@@ -63,10 +63,8 @@ void ModelReader::readChild(const Node& node, const Frame& frame) {
     f.finish();
   } else if (isScenery(node.type)) {
     readScenery(node, r_);
-  } else if (isBaseNode(node.type)) {
-    r_.ignore(node, fmt::format("a {} here is not supported", node.type));
   } else {
-    addSolid(node, frame, nullptr);
+    r_.ignore(node, fmt::format("a {} here is not supported", node.type));
   }
 }
 
