@@ -41,7 +41,7 @@ engine::Mesh ellipsoidMesh(const Vec3& half) {
   return mesh;
 }
 
-std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose& frame) {
+std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& frame) {
   Geom g;
   g.from = a.element();
   g.name = a.text("name");
@@ -63,8 +63,8 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   if (type != "mesh" && a.has("mesh") && compiler_.fitsBounds())
     return without("a <geom> that is fitted to the bounds of a mesh (fitaabb) is not supported");
   const bool world = body.parent < 0, counts = !body.hasInertial || compiler_.inertiaFromGeom() == "true";
-  const bool weightless = !counts || weight().of(1) == 0;
-  if (type == "mesh" && !g.collides() && (weightless || world) && !inPairs_.contains(g.name)) {
+  const bool weightless = world || !counts || weight().of(1) == 0;
+  if (type == "mesh" && !g.collides() && weightless && !inPairs_.contains(g.name)) {
     a.ignore({"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "size", "fromto"});
     a.finish();
     return std::nullopt;
@@ -73,10 +73,11 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   place(a, type, frame, g);
   const bool ellipsoid = type == "ellipsoid";
   if (type != "plane" && !weightless && compiler_.weighs(g.group)) {
-    const engine::Mass own = ellipsoid        ? ellipsoidMass(g.shape.lengths / 2, weight())
-                             : type == "mesh" ? meshMass(a, weight(), g.from)
-                                              : shapeMass(g.shape, weight(), g.from);
-    if (own.mass > 0) g.mass = moved(own, g.pose);
+    const engine::Mass own = massOf(a, type, weight(), g);
+    if (own.mass > 0)
+      g.mass = moved(own, g.pose);
+    else
+      body.lacksMass = true;
   }
   if (ellipsoid) {
     // Engines other than MuJoCo have it as the hull of points on it, and no viewer shows it.
@@ -89,10 +90,23 @@ std::optional<Geom> GeomReader::read(Attributes& a, const Body& body, const Pose
   return g;
 }
 
+engine::Mass GeomReader::massOf(Attributes& a, const std::string& type, const Weight& weight, const Geom& g) {
+  if (type == "ellipsoid") return ellipsoidMass(g.shape.lengths / 2, weight);
+  if (type != "mesh") return shapeMass(g.shape, weight, g.from);
+  const engine::Mass out = meshMass(a, weight, g.from);
+  if (!(out.mass > 0))
+    unsupported_.add(g.from, fmt::format("{} adds no mass to its body: its mesh is flat", g.from.named()));
+  return out;
+}
+
 engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Element& geom) {
   const Mesh& mesh = meshes_.get(a, unsupported_);
   const MeshInertia usual = compiler_.exactMeshInertia() ? MeshInertia::exact : MeshInertia::estimated;
-  return mjcf::meshMass(mesh.solid(), weight, geom, mesh.inertia.value_or(usual));
+  const MeshInertia inertia = mesh.inertia.value_or(usual);
+  if (hasVolume(mesh.solid(), inertia)) return mjcf::meshMass(mesh.solid(), weight, geom, inertia);
+  if (!mesh.hull) return {0, Vec3::Zero(), Mat3::Zero()};
+  unsupported_.add(geom, fmt::format("{} weighs as the convex hull of its mesh, which has no volume", geom.named()));
+  return mjcf::meshMass(*mesh.hull, weight, geom, MeshInertia::exact);
 }
 
 void GeomReader::contact(Attributes& a, Geom& g) const {
@@ -128,7 +142,9 @@ void GeomReader::place(Attributes& a, const std::string& type, const Pose& frame
   }
   if (type != "mesh" && a.has("mesh")) {
     const Weight byVolume{1, std::nullopt};
-    const EquivalentBox box = equivalentBox(meshMass(a, byVolume, g.from));
+    const engine::Mass mass = meshMass(a, byVolume, g.from);
+    if (!(mass.mass > 0)) throw g.from.error("the mesh has no volume");
+    const EquivalentBox box = equivalentBox(mass);
     g.pose = compose(g.pose, box.pose);
     size = a.number("fitscale", 1) * fittedSize(type, box.halfEdges);
   }

@@ -18,11 +18,14 @@ class GeomReader {
   void addToPairs(const std::string& geom) { inPairs_.insert(geom); }
   /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is not
   /// supported, or that is only seen and has a mesh. Throws Error.
-  std::optional<Geom> read(Attributes& a, const Body& body, const Pose& frame);
+  std::optional<Geom> read(Attributes& a, Body& body, const Pose& frame);
 
  private:
   void contact(Attributes& a, Geom& geom) const;
+  /// 0 for a flat mesh without volume. One that is not closed weighs as its hull, which is named.
   engine::Mass meshMass(Attributes& a, const Weight& weight, const Element& geom);
+  /// What it adds to the mass of its body; 0, and named, for a flat mesh.
+  engine::Mass massOf(Attributes& a, const std::string& type, const Weight& weight, const Geom& geom);
   void place(Attributes& a, const std::string& type, const Pose& frame, Geom& geom);
   void shape(Attributes& a, const std::string& type, const Vec3& size, Geom& geom);
 

@@ -61,11 +61,25 @@ const Mesh& Meshes::get(Attributes& a, Unsupported& unsupported) {
   const std::string name = a.text("mesh");
   const auto found = assets_.find(name);
   if (found == assets_.end()) throw a.element().error(fmt::format("there is no <mesh> '{}'", name));
-  Asset& m = found->second;
-  if (!m.loaded) load(m, unsupported);
-  numbers_ += m.loaded->surface->vertices.size() + m.loaded->surface->triangles.size();
+  const Mesh& mesh = loaded(found->second, unsupported);
+  numbers_ += mesh.surface->vertices.size() + mesh.surface->triangles.size();
   if (numbers_ > kMaxMeshNumbers)
-    throw a.element().error(fmt::format("the meshes of all geoms have more than {} numbers", kMaxMeshNumbers));
+    throw LimitError(
+        fmt::format("{}: the meshes of all geoms have more than {} numbers", a.element().where(), kMaxMeshNumbers));
+  return mesh;
+}
+
+/// One that cannot be loaded is not tried again.
+const Mesh& Meshes::loaded(Asset& m, Unsupported& unsupported) {
+  if (!m.failure.empty()) throw Error(m.failure);
+  try {
+    if (!m.loaded) load(m, unsupported);
+  } catch (const LimitError&) {
+    throw;
+  } catch (const Error& e) {
+    m.failure = e.what();
+    throw;
+  }
   return *m.loaded;
 }
 

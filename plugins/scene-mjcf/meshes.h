@@ -25,8 +25,8 @@ class Meshes {
   explicit Meshes(const ReadMesh& read) : read_(read) {}
   /// Adds an element `mesh`. `folder`: of the mesh files, "" or "a/". Throws Error.
   void add(Attributes& a, const std::string& folder, const Compiler& compiler);
-  /// The mesh that the geom `a` names. Throws Error for unknown meshes, meshes that cannot be read, and when all geoms
-  /// have more than kMaxMeshNumbers together.
+  /// The mesh that the geom `a` names. Throws Error for unknown meshes and meshes that cannot be read, LimitError when
+  /// all geoms have more than kMaxMeshNumbers together.
   const Mesh& get(Attributes& a, Unsupported& unsupported);
   /// Of the meshes that were returned.
   const Surfaces& surfaces() const { return surfaces_; }
@@ -41,7 +41,9 @@ class Meshes {
     Mat3 rotation = Mat3::Identity();
     std::string inertia;  ///< "": as the compiler says
     std::optional<Mesh> loaded;
+    std::string failure;  ///< why it cannot be loaded; "": not tried, or it is
   };
+  const Mesh& loaded(Asset& asset, Unsupported& unsupported);
   engine::Mesh surfaceOf(const Asset& asset) const;
   void load(Asset& asset, Unsupported& unsupported);
 

@@ -13,7 +13,7 @@ void MjcfImporter::describe(Description<MjcfImporter>& d) {
   d.doc("Imports models in MJCF, MuJoCo's language. Argument: a prefix for the names of its nodes.");
   d.implements<ISceneImporter>();
   d.property("strict", &MjcfImporter::strict_)
-      .doc("Unsupported elements and attributes are errors; otherwise they are logged.");
+      .doc("What is not supported, mended or left out is an error; otherwise it is logged.");
   d.property("imports", &MjcfImporter::imports_).readOnly().doc("Models imported so far.");
 }
 

@@ -7,6 +7,7 @@
 
 #include "api/mass.h"
 #include "option_reader.h"
+#include "robot/mended_mass.h"
 #include "spring_damper.h"
 #include "vocabulary.h"
 
@@ -85,18 +86,19 @@ void Reader::section(const Element& e) {
       if (tag == "asset")
         asset(child);
       else if (tag == "contact")
-        contact(child);
+        unsupported_.attempt(child, [&] { contact(child); });
       else if (tag == "equality" || tag == "tendon")
         constraint(child, tag == "tendon");
       else if (tag == "actuator")
-        actuator(child);
+        unsupported_.attempt(child, [&] { actuator(child); });
       else
-        sensor(child);
+        unsupported_.attempt(child, [&] { sensor(child); });
   }
 }
 
 void Reader::count(const Element& e) {
-  if (++elements_ > kMaxElements) throw e.error(fmt::format("expected at most {} elements", kMaxElements));
+  if (++elements_ > kMaxElements)
+    throw LimitError(fmt::format("{}: expected at most {} elements", e.where(), kMaxElements));
 }
 
 Attributes Reader::attributes(const Element& e, const std::string& childClass) {
@@ -122,8 +124,10 @@ void Reader::option(const Element& e) {
 
 void Reader::asset(const Element& e) {
   if (e.tag() == "mesh") {
-    Attributes a = attributes(e);
-    meshes_.add(a, document_.folder() + compiler_.meshFolder(), compiler_);
+    unsupported_.attempt(e, [&] {
+      Attributes a = attributes(e);
+      meshes_.add(a, document_.folder() + compiler_.meshFolder(), compiler_);
+    });
   } else if (e.tag() != "material" && e.tag() != "texture") {
     unsupported_.element(e);
   }
@@ -145,9 +149,9 @@ void Reader::content(const Element& parent, const Scope& scope) {
     else if (tag == "geom")
       geom(e, scope);
     else if (tag == "site")
-      site(e, scope);
+      unsupported_.attempt(e, [&] { site(e, scope); });
     else if (tag == "inertial")
-      inertial(e, scope);
+      leaveOutBad(e, scope, [&] { inertial(e, scope); });
     else if (!kNotSimulated.contains(tag))
       unsupported_.element(e);
   }
@@ -195,20 +199,21 @@ void Reader::inertial(const Element& e, const Scope& scope) {
   Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
   Attributes a = attributes(e);
   if (!a.has("mass")) throw e.error("expected an attribute 'mass'");
-  b.mass.mass = a.number("mass", 0);
+  engine::Mass m{a.number("mass", 0), Vec3::Zero(), Mat3::Zero()};
   Mat3 turn = Mat3::Identity();
-  a.take("pos", b.mass.center);
+  a.take("pos", m.center);
   if (const auto r = compiler_.orientation(a)) turn = *r;
   Vec3 diagonal = Vec3::Zero();
   std::array<double, 6> full{};
   if (a.take("fullinertia", full)) {
-    b.mass.inertia << full[0], full[3], full[4], full[3], full[1], full[5], full[4], full[5], full[2];
+    m.inertia << full[0], full[3], full[4], full[3], full[1], full[5], full[4], full[5], full[2];
   } else {
     a.take("diaginertia", diagonal);
-    b.mass.inertia = turn * diagonal.asDiagonal() * turn.transpose();
+    m.inertia = turn * diagonal.asDiagonal() * turn.transpose();
   }
-  b.mass.center = scope.frame.position + scope.frame.rotation * b.mass.center;
-  b.mass.inertia = scope.frame.rotation * b.mass.inertia * scope.frame.rotation.transpose();
+  m.center = scope.frame.position + scope.frame.rotation * m.center;
+  m.inertia = scope.frame.rotation * m.inertia * scope.frame.rotation.transpose();
+  b.mass = m;
   b.inertiaAxes = scope.frame.rotation * turn;
   b.hasInertial = true;
   a.finish();
@@ -299,12 +304,19 @@ void Reader::readSpringDamper(Attributes& a, Joint& j) {
   j.springDamper = both;
 }
 
+/// For what gives its body a mass.
+void Reader::leaveOutBad(const Element& e, const Scope& scope, const std::function<void()>& read) {
+  if (!unsupported_.attempt(e, read)) model_.bodies[static_cast<std::size_t>(scope.body)].lacksMass = true;
+}
+
 void Reader::geom(const Element& e, const Scope& scope) {
   Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
-  Attributes a = attributes(e, scope.childClass);
-  const std::string name = a.text("name");
-  auto g = geoms_.read(a, b, scope.frame);
-  if (!g || !g->isShape) model_.unsupportedGeoms.insert(name);
+  std::optional<Geom> g;
+  leaveOutBad(e, scope, [&] {
+    Attributes a = attributes(e, scope.childClass);
+    g = geoms_.read(a, b, scope.frame);
+  });
+  if (!g || !g->isShape) model_.unsupportedGeoms.insert(e.node.attribute("name").value());
   if (g) b.geoms.push_back(std::move(*g));
 }
 
@@ -338,6 +350,7 @@ void Reader::finishMasses() {
     }
     compiler_.adjust(b.mass);
   }
+  weighLightBodies(model_, "a <body>", unsupported_, true);
   scaleMasses();
   placeOpenFrames();
   setSpringDampers(model_, unsupported_);
@@ -401,10 +414,14 @@ void Reader::contact(const Element& e) {
 
 void Reader::constraint(const Element& e, bool tendon) {
   count(e);
-  if (!tendon) return constraints_.equality(e, model_);
+  if (!tendon) {
+    unsupported_.attempt(e, [&] { constraints_.equality(e, model_); });
+    return;
+  }
   const std::vector<Element> parts = document_.children(e);
   for (const Element& part : parts) count(part);
-  constraints_.tendon(e, parts, model_);
+  if (!unsupported_.attempt(e, [&] { constraints_.tendon(e, parts, model_); }))
+    model_.skippedTendons.insert(e.node.attribute("name").value());
 }
 
 void Reader::actuator(const Element& e) {

@@ -41,11 +41,7 @@ class UniqueNames {
   std::map<std::string, int, std::less<>> last_;  ///< number that a name has had
 };
 
-/// A limit that a file has passed: nothing more is read.
-class LimitError : public Error {
- public:
-  using Error::Error;
-};
+using mjcf::LimitError;
 
 /// State of one run over a file.
 struct Reading {

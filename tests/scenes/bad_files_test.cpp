@@ -66,7 +66,7 @@ std::vector<BadFile> badMjcf() {
       {"includes itself", "c.xml", mjcf(ball, "\n<include file='c.xml'/>"), "c.xml:4:1: ", "c.xml"},
       {"missing mesh", "m.xml",
        mjcf(ball + "<geom type='mesh' mesh='x'/>", "", "<asset>\n<mesh name='x' file='none.stl'/></asset>"),
-       "m.xml:2:1: ", "none.stl"},
+       "m.xml:4:", "none.stl"},
       {"NaN position", "n.xml", mjcf(ball + "\n<site pos='0 nan 0'/>"), "n.xml:4:1: ", "expected 3 numbers"},
       {"infinite position", "n.xml", mjcf(ball + "\n<site pos='0 1e400 0'/>"), "n.xml:4:1: ", "expected 3 numbers"},
       {"absurd position", "s.xml", mjcf(ball + "\n<body pos='1e200 0 0'><joint/><geom size='1'/></body>"),
@@ -132,7 +132,7 @@ void checkAll(const std::vector<BadFile>& files, const char* transactional) {
   ImportHost h;
   h.setTransactional(transactional);
   // Otherwise one bad part is left out, and the file is imported.
-  for (const char* importer : {"urdf", "webots"})
+  for (const char* importer : {"mjcf", "urdf", "webots"})
     setProperty(h.kernel.root().require<Leaf>(std::string("/sys/server/scene/") + importer), "strict", true);
   h.folder.write("h.rsg", "(RSG 0 2)(" + repeated(5000, "(importScene i.rsg)") + ")");
   h.folder.write("i.rsg", "(RSG 0 2)((nd Transform))");

@@ -114,8 +114,8 @@ std::uint64_t matchWith(const std::string& robot, const char* transactional, std
                  "SphereCollider (setRadius 0.1)))(nd Transform (setName arm)(nd RigidBody)(nd HingeJoint (attach "
                  "../RigidBody ../../torso/RigidBody)(nd HingeEffector)))\n(nd Sphare))");
   h.folder.write("late.xml",
-                 "<mujoco><worldbody><body><freejoint/><geom size='.1'/></body></worldbody>\n<actuator><motor "
-                 "joint='none'/></actuator></mujoco>");
+                 "<mujoco><worldbody><body><freejoint/><geom size='.1'/><body><joint name='j'/><geom size='.1'/></body>"
+                 "<body>\n<joint name='j'/><geom size='.1'/></body></body></worldbody></mujoco>");
   Node& agent = *h.kernel.create("AgentAspect", "/usr/scene/agent").asNode();
   auto& effector = agent.create<Effector>("SceneEffector", "scene");
   h.step(5);

@@ -32,10 +32,12 @@ void ActuatorBuilder::build() {
   // By joint, in the order of the file.
   std::vector<std::pair<std::string, Actuators>> groups;
   for (const Actuator& x : c_.model.actuators) {
-    if (isOfEngine(x)) {
-      makeEngineActuator(x);
-      continue;
-    }
+    bool plain = false;
+    c_.attempt(x.from, c_.top, [&] {
+      plain = !isOfEngine(x);
+      if (!plain) makeEngineActuator(x);
+    });
+    if (!plain) continue;
     auto found = std::find_if(groups.begin(), groups.end(), [&](const auto& g) { return g.first == x.joint; });
     if (found == groups.end()) found = groups.insert(groups.end(), {x.joint, {}});
     found->second.push_back(&x);
@@ -72,8 +74,10 @@ void ActuatorBuilder::makeEngineActuator(const Actuator& x) {
   if (n.type == "tendon") {
     const auto tendon = c_.tendons.find(n.target);
     if (tendon == c_.tendons.end()) {
-      const auto& skipped = c_.model.skippedTendons;
-      if (!skipped.contains(n.target)) throw x.from.error(fmt::format("there is no tendon '{}'", n.target));
+      const auto& all = c_.model.tendons;
+      if (!c_.model.skippedTendons.contains(n.target) &&
+          std::none_of(all.begin(), all.end(), [&](const Tendon& t) { return t.name == n.target; }))
+        throw x.from.error(fmt::format("there is no tendon '{}'", n.target));
       return c_.unsupported.add(x.from, fmt::format("{} acts on a tendon that is left out", x.from.named()));
     }
     if (!tendon->second) return;
@@ -81,7 +85,8 @@ void ActuatorBuilder::makeEngineActuator(const Actuator& x) {
     for (const Tendon& t : c_.model.tendons)
       if (t.name == n.target && !t.spatial)
         for (const TendonPart& part : t.parts)
-          offset += n.gear[0] * part.coefficient * c_.joints.find(part.name)->second.joint->reference;
+          if (const auto joint = c_.joints.find(part.name); joint != c_.joints.end())
+            offset += n.gear[0] * part.coefficient * joint->second.joint->reference;
   } else if (n.type == "site" || n.type == "slidercrank") {
     at(n.target, "target", "point", "rotation");
     if (!n.reference.empty()) {

@@ -10,7 +10,7 @@ namespace spark::mjcf {
 class ActuatorBuilder {
  public:
   explicit ActuatorBuilder(Construction& construction) : c_(construction) {}
-  /// Throws Error with file:line:column.
+  /// What acts on something that is not there is left out, and named. Throws Error with file:line:column.
   void build();
 
  private:

@@ -11,9 +11,9 @@ namespace spark::mjcf {
 
 void ConstraintBuilder::build() {
   // Equalities name tendons.
-  for (const Tendon& t : c_.model.tendons) tendon(t);
+  for (const Tendon& t : c_.model.tendons) c_.attempt(t.from, c_.top, [&] { tendon(t); });
   if (c_.flags.equality)
-    for (const Equality& x : c_.model.equalities) equality(x);
+    for (const Equality& x : c_.model.equalities) c_.attempt(x.from, c_.top, [&] { equality(x); });
 }
 
 Leaf* ConstraintBuilder::make(const Element& from, const char* className, const std::string& name, const char* kind) {
@@ -129,8 +129,10 @@ void ConstraintBuilder::tendon(const Tendon& t) {
   if (!t.spatial)
     for (const TendonPart& part : t.parts) offset += part.coefficient * jointOf(part.name, part.from).joint->reference;
   Leaf* const node = make(t.from, "MujocoTendon", t.name, "tendon");
-  if (!t.name.empty()) c_.tendons.emplace(t.name, node);
-  if (!node) return;
+  const auto finish = [&] {
+    if (!t.name.empty()) c_.tendons.emplace(t.name, node);
+  };
+  if (!node) return finish();
   for (const TendonPart& part : t.parts) addPart(part, *node);
   setProperty(*node, "stiffness", c_.flags.passive ? t.stiffness : 0);
   setProperty(*node, "damping", c_.flags.passive ? t.damping : 0);
@@ -143,6 +145,7 @@ void ConstraintBuilder::tendon(const Tendon& t) {
   setProperty(*node, "limitSolimp", toList(t.limitSolimp));
   setProperty(*node, "frictionSolref", toList(t.frictionSolref));
   setProperty(*node, "frictionSolimp", toList(t.frictionSolimp));
+  finish();
 }
 
 bool ConstraintBuilder::hasShiftedJoint(const Tendon& t) {

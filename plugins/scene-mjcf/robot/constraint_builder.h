@@ -10,7 +10,7 @@ namespace spark::mjcf {
 class ConstraintBuilder {
  public:
   explicit ConstraintBuilder(Construction& construction) : c_(construction) {}
-  /// Throws Error with file:line:column.
+  /// What names something that is not there is left out, and named.
   void build();
 
  private:

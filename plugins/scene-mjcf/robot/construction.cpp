@@ -50,6 +50,13 @@ Construction::FoundSite Construction::site(const std::string& name, const Elemen
   throw user.error(fmt::format("there is no site '{}'", name));
 }
 
+bool Construction::attempt(const Element& from, Node& parent, const std::function<void()>& work) {
+  const std::size_t before = parent.children().size();
+  if (unsupported.attempt(from, work)) return true;
+  while (parent.children().size() > before) parent.remove(*parent.children().back());
+  return false;
+}
+
 bool Construction::has(const char* className) {
   const Kernel& kernel = top.kernel();
   const char* const base = std::string_view(className).ends_with("Effector") ? "Effector" : "Perceptor";

@@ -32,6 +32,8 @@ struct Construction {
   };
   /// Throws Error, with the place of `user`, where there is none of that name.
   FoundSite site(const std::string& name, const Element& user);
+  /// As Unsupported::attempt(); what failed leaves no nodes in `parent`.
+  bool attempt(const Element& from, Node& parent, const std::function<void()>& work);
   /// True when there is such a class of perceptors or effectors.
   bool has(const char* className);
 

@@ -168,6 +168,23 @@ void Unsupported::add(const Element& e, const std::string& what) {
     known_.emplace(what, entries_.size()), entries_.push_back({what, e.where(), 1});
 }
 
+bool Unsupported::attempt(const Element& e, const std::function<void()>& work) {
+  try {
+    work();
+    return true;
+  } catch (const LimitError&) {
+    throw;
+  } catch (const Error& error) {
+    std::string why = error.what();
+    if (const std::string place = e.where() + ": "; why.starts_with(place)) why.erase(0, place.size());
+    constexpr std::string_view kBecause = "\n  because: ";
+    for (std::size_t at = why.find(kBecause); at != std::string::npos; at = why.find(kBecause, at))
+      why.replace(at, kBecause.size(), ": ");
+    add(e, fmt::format("{} is left out: {}", e.named(), why));
+    return false;
+  }
+}
+
 void Unsupported::element(const Element& e) { add(e, fmt::format("the element <{}> is not supported", e.tag())); }
 
 void Unsupported::attribute(const Element& e, const std::string& name) {

@@ -94,6 +94,12 @@ class Defaults {
   std::map<std::string, Class, std::less<>> classes_;
 };
 
+/// A file that is too large: no part of it is left out for that.
+class LimitError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// What of a model is not supported, or is changed: elements, attributes and combinations of them.
 class Unsupported {
  public:
@@ -101,6 +107,9 @@ class Unsupported {
   void attribute(const Element& e, const std::string& name);
   /// Something else: one sentence per `what`, with the first place. The same of one element counts once.
   void add(const Element& e, const std::string& what);
+  /// Does `work` for an element. If it fails, the element is named with the reason, as left out, and false is returned.
+  /// Throws LimitError.
+  bool attempt(const Element& e, const std::function<void()>& work);
   /// "a.xml:3:4: the element <tendon> is not supported (and 3 more)", in order of the first places.
   std::vector<std::string> sentences() const;
 

@@ -96,8 +96,8 @@ void setContact(Node& collider, const Geom& g) {
 
 void GeomBuilder::build() {
   for (PlacedBody& b : c_.bodies) makeGeoms(b), makeSites(b);
-  for (const Exclusion& x : c_.model.exclusions) exclude(x);
-  for (const Pair& p : c_.model.pairs) pair(p);
+  for (const Exclusion& x : c_.model.exclusions) c_.unsupported.attempt(x.from, [&] { exclude(x); });
+  for (const Pair& p : c_.model.pairs) c_.attempt(p.from, c_.top, [&] { pair(p); });
 }
 
 void GeomBuilder::makeGeoms(PlacedBody& p) {
@@ -106,12 +106,9 @@ void GeomBuilder::makeGeoms(PlacedBody& p) {
   const bool drawn =
       std::any_of(geoms.begin(), geoms.end(), [](const Geom& g) { return g.visible() && !hasMesh(g.shape); });
   for (const Geom& g : geoms) {
-    try {
-      if (c_.flags.contact && g.isShape && (g.collides() || inPair(g.name))) makeCollider(g, p);
-      if (g.visible() || !drawn) makeVisible(g, p);
-    } catch (const Error& e) {
-      throw Error(fmt::format("{}: cannot make the geom '{}'", g.from.where(), g.name), e);
-    }
+    const bool collides = c_.flags.contact && g.isShape && (g.collides() || inPair(g.name));
+    if (collides && !c_.attempt(g.from, c_.nodeOf(p), [&] { makeCollider(g, p); })) continue;
+    if (g.visible() || !drawn) c_.attempt(g.from, c_.nodeOf(p), [&] { makeVisible(g, p); });
   }
 }
 
@@ -147,14 +144,14 @@ void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
   const char* const kind = kinds[static_cast<int>(shape.shape)];
   Node& parent = c_.nodeOf(p);
   Node& collider = *parent.create(kind, c_.names.collider(parent, g.name)).asNode();
-  p.colliders.push_back(&collider);
-  if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
-    throw Error(fmt::format("there are two geoms '{}'", g.name));
   setShape(collider, shape, moves ? c_.inNode(p, g.pose) : compose(p.world, g.pose));
   setContact(collider, g);
   const engine::Mesh* const surface = c_.model.meshesAreHulls ? sourceOf(shape) : nullptr;
   if (surface && *surface != *shape.mesh) setSurface(collider, *surface);
   setProperty(collider, "part", p.part);
+  p.colliders.push_back(&collider);
+  if (!g.name.empty() && !c_.colliders.emplace(g.name, &collider).second)
+    c_.unsupported.add(g.from, fmt::format("{} has the name of another one: pairs name the first", g.from.named()));
 }
 
 void GeomBuilder::makeVisible(const Geom& g, const PlacedBody& p) {
@@ -206,8 +203,8 @@ void GeomBuilder::pair(const Pair& p) {
       return c_.unsupported.add(p.from, fmt::format("a <pair> of the unsupported geom '{}' is not supported", name));
   if (first == none || second == none)
     throw p.from.error(fmt::format("there is no geom '{}'", first == none ? p.geom1 : p.geom2));
-  callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
   surfaceOf(p, *first->second, *second->second);
+  callMethod(*first->second, "addCollideWithColliderName", List{second->second->name(), true});
 }
 
 void GeomBuilder::surfaceOf(const Pair& p, const Node& first, const Node& second) {

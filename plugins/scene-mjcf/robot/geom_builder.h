@@ -11,7 +11,7 @@ namespace spark::mjcf {
 class GeomBuilder {
  public:
   explicit GeomBuilder(Construction& construction) : c_(construction) {}
-  /// Throws Error with file:line:column.
+  /// What cannot be made, or names what is not there, is left out, and named.
   void build();
 
  private:

@@ -105,6 +105,8 @@ engine::Mass meshVolume(const engine::Mesh& mesh, MeshInertia inertia) {
 
 }  // namespace
 
+bool hasVolume(const engine::Mesh& mesh, MeshInertia inertia) { return meshVolume(mesh, inertia).mass > 0; }
+
 engine::Mass meshMass(const engine::Mesh& mesh, const Weight& weight, const Element& geom, MeshInertia inertia) {
   engine::Mass m = meshVolume(mesh, inertia);
   if (!(m.mass > 0)) throw geom.error("the mesh has no volume");

@@ -27,6 +27,7 @@ enum class MeshInertia {
 
 // Mass, centre and inertia of a solid of uniform density in its own frame, inertia about its centre.
 
+bool hasVolume(const engine::Mesh& mesh, MeshInertia inertia);
 /// Of a mesh. Throws Error, with the place of `geom`, for one without volume.
 engine::Mass meshMass(const engine::Mesh& mesh, const Weight& weight, const Element& geom,
                       MeshInertia inertia = MeshInertia::exact);

@@ -25,17 +25,19 @@ void mendInertia(engine::Mass& mass, const Element& from, const std::string& wha
   }
 }
 
-void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported) {
+void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported, bool flawedOnly) {
   std::vector<double> masses(model.bodies.size(), 0.0);  // of what is fixed to a body that moves
   std::vector<std::size_t> carrier(model.bodies.size(), 0);
+  std::vector<bool> flawed(model.bodies.size(), false);
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& b = model.bodies[i];
     carrier[i] = b.joints.empty() ? carrier[static_cast<std::size_t>(b.parent)] : i;
     masses[carrier[i]] += b.mass.mass;
+    if (b.lacksMass) flawed[carrier[i]] = true;
   }
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     Body& b = model.bodies[i];
-    if (carrier[i] != i || masses[i] > 0) continue;
+    if (carrier[i] != i || masses[i] > 0 || (flawedOnly && !flawed[i])) continue;
     unsupported.add(b.from, fmt::format("{} that moves and has no mass gets {} g", what, 1000 * kLightMass));
     b.mass = physics::sphereMass(kLightMass, kLightRadius);
   }

@@ -14,7 +14,7 @@ namespace spark::mjcf {
 void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported);
 
 /// Bodies that move and have no mass, together with what is fixed to them, get 10 g, which is named in `unsupported`.
-/// `what`: "a <link>".
-void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported);
+/// `what`: "a <link>". `flawedOnly`: only where a part lacks a mass that the file would give it.
+void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported, bool flawedOnly = false);
 
 }  // namespace spark::mjcf

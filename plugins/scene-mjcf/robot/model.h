@@ -85,6 +85,7 @@ struct Body {
   Mat3 inertiaAxes = Mat3::Identity();               ///< principal axes, where inertial or geom give them
   bool isFrameOpen = false;                          ///< its frame is where its centre of mass is
   bool hasInertial = false;                          ///< an inertial element says so
+  bool lacksMass = false;                            ///< what would give it some is left out, or gives none
   double gravityCompensation = 0;                    ///< part of the gravity that does not act on it
   std::vector<Joint> joints;
   std::vector<Geom> geoms;

@@ -16,30 +16,32 @@ constexpr double kFarthest = 1000;  // m: of a rangefinder without a cutoff
 }  // namespace
 
 void SensorBuilder::build() {
-  for (const Sensor& s : c_.model.sensors) {
-    if (!s.reference.empty())
-      refuse(s, "relative to another frame (reftype) is not supported");
-    else if (s.kind == "jointpos" || s.kind == "jointvel")
-      continue;
-    else if (s.perceptor)
-      s.objectType == "body" ? onColliders(s) : onFrame(s, s.perceptor);
-    else if (s.kind == "gyro")
-      onBody(s, "GyroRatePerceptor");
-    else if (s.kind == "accelerometer")
-      onBody(s, "Accelerometer");
-    else if (s.kind == "rangefinder")
-      onRay(s);
-    else if (s.kind == "framepos")
-      onFrame(s, "PositionPerceptor");
-    else if (s.kind == "framequat")
-      onFrame(s, "OrientationPerceptor");
-    else
-      refuse(s, "is not supported");
-  }
+  for (const Sensor& s : c_.model.sensors) c_.unsupported.attempt(s.from, [&] { make(s); });
   // A perceptor of a joint senses position and rate: that of the position has both.
   for (const char* const kind : {"jointpos", "jointvel"})
     for (const Sensor& s : c_.model.sensors)
-      if (s.kind == kind) onJoint(s);
+      if (s.kind == kind) c_.unsupported.attempt(s.from, [&] { onJoint(s); });
+}
+
+void SensorBuilder::make(const Sensor& s) {
+  if (!s.reference.empty())
+    refuse(s, "relative to another frame (reftype) is not supported");
+  else if (s.kind == "jointpos" || s.kind == "jointvel")
+    return;
+  else if (s.perceptor)
+    s.objectType == "body" ? onColliders(s) : onFrame(s, s.perceptor);
+  else if (s.kind == "gyro")
+    onBody(s, "GyroRatePerceptor");
+  else if (s.kind == "accelerometer")
+    onBody(s, "Accelerometer");
+  else if (s.kind == "rangefinder")
+    onRay(s);
+  else if (s.kind == "framepos")
+    onFrame(s, "PositionPerceptor");
+  else if (s.kind == "framequat")
+    onFrame(s, "OrientationPerceptor");
+  else
+    refuse(s, "is not supported");
 }
 
 void SensorBuilder::refuse(const Sensor& s, const std::string& why) {
@@ -154,11 +156,16 @@ Leaf* SensorBuilder::makePerceptor(const Sensor& s, Node& parent, const char* cl
   if (message != perceptor.name()) setProperty(perceptor, "messageName", message);
   if (message != name)
     c_.unsupported.add(s.from, fmt::format("the sensor {} is called {} in messages", s.from.named(), message));
-  for (const auto& [property, value] : s.settings) setProperty(perceptor, property, value);
-  if (const auto joint = c_.joints.find(s.object); std::string_view(className) == "JointPerceptor")
-    setProperty(perceptor, "reference", joint->second.joint->reference);
-  addImperfections(s, perceptor);
-  setRate(s, perceptor);
+  try {
+    for (const auto& [property, value] : s.settings) setProperty(perceptor, property, value);
+    if (const auto joint = c_.joints.find(s.object); std::string_view(className) == "JointPerceptor")
+      setProperty(perceptor, "reference", joint->second.joint->reference);
+    addImperfections(s, perceptor);
+    setRate(s, perceptor);
+  } catch (const Error&) {
+    parent.remove(perceptor);  // it is left out
+    throw;
+  }
   return &perceptor;
 }
 

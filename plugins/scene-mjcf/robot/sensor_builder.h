@@ -11,7 +11,7 @@ namespace spark::mjcf {
 class SensorBuilder {
  public:
   explicit SensorBuilder(Construction& construction) : c_(construction) {}
-  /// Throws Error with file:line:column.
+  /// A sensor of what is not there is left out, and named.
   void build();
 
  private:
@@ -20,6 +20,7 @@ class SensorBuilder {
     PlacedBody* body;
     Pose pose;
   };
+  void make(const Sensor& s);
   void onJoint(const Sensor& s);
   void onBody(const Sensor& s, const char* className);
   void onRay(const Sensor& s);

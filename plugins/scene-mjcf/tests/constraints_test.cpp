@@ -85,26 +85,40 @@ TEST_CASE("other engines say that equalities and tendons have no effect") {
   }
 }
 
-TEST_CASE("equalities and tendons of what is not there are errors, and leave nothing behind") {
-  MujocoHost h;
+TEST_CASE("equalities and tendons of what is not there are left out, and are errors with strict") {
   const std::pair<const char*, const char*> cases[] = {
-      {"<equality><weld body1='a' body2='nobody'/></equality>", "m.xml:8:11: there is no body 'nobody'"},
-      {"<equality><joint joint1='free'/></equality>", "m.xml:8:11: there is no joint 'free' with a coordinate"},
+      {"<equality><weld body1='a' body2='nobody'/></equality>",
+       "m.xml:8:11: <weld> is left out: there is no body 'nobody'"},
+      {"<equality><joint joint1='free'/></equality>",
+       "m.xml:8:11: <joint> is left out: there is no joint 'free' with a coordinate"},
       {"<equality><joint joint1='round'/></equality>",
-       "m.xml:8:11: expected a joint with one coordinate, found the ball"},
-      {"<tendon><fixed><joint joint='none' coef='1'/></fixed></tendon>", "m.xml:8:16: there is no joint 'none'"},
-      {"<equality><weld body1='a' body2='a'/></equality>", "m.xml:8:11: expected two different elements"},
-      {"<equality><joint joint1='ja' joint2='ja'/></equality>", "m.xml:8:11: expected two different elements"},
-      {"<tendon><fixed><joint joint='ja'/></fixed></tendon>", "m.xml:8:16: expected an attribute 'coef'"},
+       "m.xml:8:11: <joint> is left out: expected a joint with one coordinate, found the ball"},
+      {"<tendon><fixed><joint joint='none' coef='1'/></fixed></tendon>",
+       "m.xml:8:9: <fixed> is left out: m.xml:8:16: there is no joint 'none'"},
+      {"<equality><weld body1='a' body2='a'/></equality>",
+       "m.xml:8:11: <weld> is left out: expected two different elements"},
+      {"<equality><joint joint1='ja' joint2='ja'/></equality>",
+       "m.xml:8:11: <joint> is left out: expected two different elements"},
+      {"<tendon><fixed><joint joint='ja'/></fixed></tendon>",
+       "m.xml:8:9: <fixed> is left out: m.xml:8:16: expected an attribute 'coef'"},
       {"<tendon><spatial><site site='sa'/><site site='sa'/></spatial></tendon>",
-       "m.xml:8:35: expected another site than the one before"},
-      {"<tendon><spatial><site site='sa'/><site site='no'/></spatial></tendon>", "m.xml:8:35: there is no site 'no'"},
+       "m.xml:8:9: <spatial> is left out: m.xml:8:35: expected another site than the one before"},
+      {"<tendon><spatial><site site='sa'/><site site='no'/></spatial></tendon>",
+       "m.xml:8:9: <spatial> is left out: m.xml:8:35: there is no site 'no'"},
   };
   for (const auto& [section, message] : cases) {
+    MujocoHost h;
+    h.import(with(section));
+    CHECK_THAT(h.text, Catch::Contains(message));
+    for (const auto& child : h.at<Node>("m").children())
+      CHECK_FALSE(child->classObject()->name() == std::string("MujocoTendon"));
+    h.step();
+    CHECK_THAT(h.text, !Catch::Contains("no effect"));
+    setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
+    h.scene.remove(*h.scene.child("m"));
     CHECK_THAT(h.failure(with(section)), Catch::Contains(message));
     CHECK_FALSE(h.kernel.root().find("/usr/scene/m"));
   }
-  h.step();
 }
 
 TEST_CASE("numbers of equalities and tendons are finite") {

@@ -169,16 +169,40 @@ TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
        "there are two joints 'j'"},
       {in("<body><geom size='1'/><body><freejoint/><geom size='1'/></body></body>"),
        "m.xml:1:52: expected a free joint as the only one"},
-      {"<mujoco model='m'><contact><exclude body1='x' body2='y'/></contact></mujoco>",
-       "m.xml:1:28: there is no body 'x'"},
-      {"<mujoco model='m'><actuator><motor joint='q'/></actuator></mujoco>",
-       "m.xml:1:29: there is no joint 'q' to act on"},
   };
   for (const auto& [text, message] : cases) {
     CHECK_THAT(h.failure(text), Catch::Contains(message));
     CHECK_FALSE(h.scene.child("m"));
   }
   h.step(1);
+}
+
+TEST_CASE("what names something that is not there is left out and named, and is an error with strict") {
+  const std::pair<const char*, const char*> cases[] = {
+      {"<contact><exclude body1='x' body2='b'/></contact>", "<exclude> is left out: there is no body 'x'"},
+      {"<contact><pair geom1='g' geom2='x'/></contact>", "<pair> is left out: there is no geom 'x'"},
+      {"<actuator><motor joint='q'/></actuator>", "<motor> is left out: there is no joint 'q' to act on"},
+      {"<actuator><motor name='t' tendon='q'/></actuator>", "<motor> 't' is left out: there is no tendon 'q'"},
+      {"<sensor><jointpos joint='q'/></sensor>", "<jointpos> is left out: there is no joint 'q'"},
+      {"<sensor><gyro name='i' site='q'/></sensor>", "<gyro> 'i' is left out: there is no site 'q'"},
+      {"<sensor><framepos objtype='body' objname='q'/></sensor>", "<framepos> is left out: there is no body 'q'"},
+  };
+  for (const auto& [section, message] : cases) {
+    CAPTURE(section);
+    const std::string text =
+        "<mujoco model='m'><worldbody><body name='b'><freejoint/><geom name='g' size='.1'/></body></worldbody>\n" +
+        std::string(section) + "</mujoco>";
+    RobotHost h;
+    h.kernel.plugins().use("physics-mujoco");
+    h.import(text);
+    CHECK_THAT(h.text, Catch::Contains("m.xml:2:") && Catch::Contains(message));
+    CHECK(h.find("m/b/body"));
+    h.step(2);
+    h.scene.remove(*h.scene.child("m"));
+    setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
+    CHECK_THAT(h.failure(text), Catch::Contains(message));
+    CHECK_FALSE(h.scene.child("m"));
+  }
 }
 
 TEST_CASE("sensors and actuators become perceptors and effectors") {
@@ -263,6 +287,7 @@ TEST_CASE("gravity can be compensated for whole bodies") {
 
 TEST_CASE("mesh files may be MSH files, and OBJ files without faces") {
   MjcfHost h;
+  setProperty(*h.kernel.root().find("/sys/server/scene/mjcf"), "strict", true);
   const auto model = [](const std::string& file) {
     return "<mujoco model='m'><asset><mesh name='t' file='" + file +
            "'/></asset><worldbody><body name='b'><freejoint/><geom name='g' type='mesh' mesh='t' density='6'/></body>"

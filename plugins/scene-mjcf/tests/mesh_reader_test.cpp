@@ -1,13 +1,16 @@
 // Reads meshes of MJCF models.
 
+#include <fmt/ranges.h>
+
 #include "read_model.h"
 
 using namespace spark;
 using namespace spark::mjcf;
 using namespace spark::mjcf::test;
 
-TEST_CASE("a flat mesh is refused only if its mass is needed") {
-  const auto read = [](const std::string& content) {
+TEST_CASE("a flat mesh adds no mass, which is named if it is needed") {
+  std::string sentences;
+  const auto read = [&](const std::string& content) {
     Unsupported unsupported;
     const std::string text =
         "<mujoco><asset><mesh name='m' file='m.stl'/></asset><worldbody>" + content + "</worldbody></mujoco>";
@@ -18,12 +21,51 @@ TEST_CASE("a flat mesh is refused only if its mass is needed") {
       s.triangles = {0, 1, 2};
       return s;
     };
-    return readModel(document, triangle, unsupported).bodies.back().mass.mass;
+    const double mass = readModel(document, triangle, unsupported).bodies.back().mass.mass;
+    sentences = fmt::format("{}", fmt::join(unsupported.sentences(), "\n"));
+    return mass;
   };
   const std::string mesh = "<geom type='mesh' mesh='m'/>";
   CHECK(read("<body><joint/><inertial pos='0 0 0' mass='3' diaginertia='1 1 1'/>" + mesh + "</body>") == 3);
   CHECK(read("<body><joint/><geom size='1' mass='2'/><geom type='mesh' mesh='m' mass='0'/></body>") == Approx(2));
-  CHECK_THROWS_WITH(read("<body><joint/>" + mesh + "</body>"), Catch::Contains("the mesh has no volume"));
+  CHECK_THAT(sentences, !Catch::Contains("adds no mass"));
+  read(mesh);
+  CHECK_THAT(sentences, !Catch::Contains("adds no mass"));
+  CHECK(read("<body><joint/>" + mesh + "</body>") == Approx(0.01));
+  CHECK_THAT(sentences, Catch::Contains("<geom> adds no mass to its body: its mesh is flat"));
+  CHECK_THAT(sentences, Catch::Contains("a <body> that moves and has no mass gets 10 g"));
+  read("<body><joint/><geom mesh='m'/></body>");
+  CHECK_THAT(sentences, Catch::Contains("<geom> is left out: the mesh has no volume"));
+}
+
+TEST_CASE("a mesh that is not closed may weigh as its hull, and one that cannot be read is tried once") {
+  int tries = 0;
+  const auto read = [&](const engine::Mesh& s, Unsupported& unsupported) {
+    const std::string text =
+        "<mujoco><compiler exactmeshinertia='true'/><asset><mesh name='m' file='m.stl'/></asset><worldbody>"
+        "<body><joint/><geom type='mesh' mesh='m' density='6'/><geom type='mesh' mesh='m' density='6'/></body>"
+        "</worldbody></mujoco>";
+    Document document("a.xml", [&](const std::string&) { return text; });
+    const auto file = [&](const std::string&) {
+      ++tries;
+      if (s.vertices.empty()) throw Error("there is no such file");
+      return s;
+    };
+    return readModel(document, file, unsupported).bodies.back().mass.mass;
+  };
+  engine::Mesh open;  // two sides of a tetrahedron through the origin
+  open.vertices = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  open.triangles = {0, 2, 1, 0, 1, 3};
+  Unsupported hull, missing;
+  CHECK(read(open, hull) == Approx(2));
+  CHECK_THAT(hull.sentences().at(0),
+             Catch::Contains("<geom> weighs as the convex hull of its mesh, which has no volume (and 1 more)"));
+  tries = 0;
+  CHECK(read({}, missing) == Approx(0.01));
+  CHECK(tries == 1);
+  CHECK_THAT(missing.sentences().at(0),
+             Catch::StartsWith("a.xml:1:113: <geom> is left out: a.xml:1:51: cannot read the mesh 'm.stl': there is "
+                               "no such file (and 1 more)"));
 }
 
 TEST_CASE("a mesh can be written in the model, and collides as its convex hull") {
@@ -68,7 +110,7 @@ TEST_CASE("a mesh can be written in the model, and collides as its convex hull")
     CHECK(r.body(1).mass.mass == Approx(6 * 48));
     CHECK(r.body(1).mass.center.isApprox(Vec3(-1, -6, 6)));
   }
-  SECTION("what is no mesh is refused") {
+  SECTION("what is no mesh is left out") {
     for (const auto& [attributes, message] :
          {std::pair{"vertex='0 0 0 1 0 0 0 1 0'", "expected 12 to"},
           {"vertex='0 0 0 1 0 0 0 1 0 1 1 0'", "the mesh has no convex hull"},
@@ -77,7 +119,7 @@ TEST_CASE("a mesh can be written in the model, and collides as its convex hull")
           {"vertex='0 0 0 1 0 0 0 1 0 0 0 1' face='0 1 2 3'", "expected three numbers for each triangle"},
           {"", "expected an attribute 'file' or 'vertex'"},
           {"vertex='0 0 0 1 0 0 0 1 0 0 0 1' refquat='0 0 0 0'", "expected a quaternion that is not 0"}})
-      CHECK_THAT(failure(mesh(attributes)), Catch::Contains(message));
+      CHECK_THAT(named(mesh(attributes)), Catch::Contains(message));
   }
 }
 

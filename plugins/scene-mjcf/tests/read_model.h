@@ -57,4 +57,7 @@ inline std::string failure(const std::string& text, Files files = {}) {
   return "";
 }
 
+/// What is named of a model that is read nevertheless, one sentence a line.
+inline std::string named(const std::string& text, Files files = {}) { return Read(text, std::move(files)).messages(); }
+
 }  // namespace spark::mjcf::test

@@ -104,25 +104,62 @@ TEST_CASE("errors have the position, what was expected, and what was found") {
        "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2'"},
       {"<mujoco><worldbody><body pos='1 2 nan'/></worldbody></mujoco>",
        "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
-      {"<mujoco><worldbody><geom type='cone'/></worldbody></mujoco>", "a.xml:1:20: expected plane or hfield or sphere"},
-      {"<mujoco><worldbody><geom type='box' size='1 1'/></worldbody></mujoco>",
-       "a.xml:1:20: the 'size' of a box needs 3 lengths above 0"},
-      {"<mujoco><worldbody><geom class='x'/></worldbody></mujoco>", "a.xml:1:20: there is no default class 'x'"},
-      {"<mujoco><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>", "a.xml:1:20: there is no <mesh> 'm'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
-      {"<mujoco><equality><joint/></equality></mujoco>", "a.xml:1:19: expected an attribute 'joint1'"},
-      {"<mujoco><equality><connect body1='a'/></equality></mujoco>", "a.xml:1:19: expected an attribute 'anchor'"},
-      {"<mujoco><equality><weld body1='a' relpose='1 2'/></equality></mujoco>",
-       "a.xml:1:19: expected 7 numbers for 'relpose' of <weld>, found '1 2'"},
-      {"<mujoco><tendon><fixed/></tendon></mujoco>", "a.xml:1:17: expected at least one joint in a tendon"},
-      {"<mujoco><tendon><spatial><site site='a'/></spatial></tendon></mujoco>",
-       "a.xml:1:17: expected at least two sites in a tendon"},
-      {"<mujoco><tendon><fixed damping='-1'/></tendon></mujoco>",
-       "a.xml:1:17: expected 'damping' of 0 or more, found -1"},
       {"<mujoco><compiler eulerseq='xyw'/></mujoco>",
        "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xyw'"},
   };
   for (const auto& [text, message] : cases) CHECK_THAT(failure(text), Catch::StartsWith(message));
+}
+
+TEST_CASE("a part that is bad is left out, and named with its place, what was expected, and what was found") {
+  const std::pair<const char*, const char*> cases[] = {
+      {"<mujoco><worldbody><geom type='cone'/></worldbody></mujoco>",
+       "a.xml:1:20: <geom> is left out: expected plane or hfield or sphere"},
+      {"<mujoco><worldbody><geom type='box' size='1 1'/></worldbody></mujoco>",
+       "a.xml:1:20: <geom> is left out: the 'size' of a box needs 3 lengths above 0"},
+      {"<mujoco><worldbody><geom class='x'/></worldbody></mujoco>",
+       "a.xml:1:20: <geom> is left out: there is no default class 'x'"},
+      {"<mujoco><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>",
+       "a.xml:1:20: <geom> is left out: there is no <mesh> 'm'"},
+      {"<mujoco><equality><joint/></equality></mujoco>",
+       "a.xml:1:19: <joint> is left out: expected an attribute 'joint1'"},
+      {"<mujoco><equality><connect body1='a'/></equality></mujoco>",
+       "a.xml:1:19: <connect> is left out: expected an attribute 'anchor'"},
+      {"<mujoco><equality><weld body1='a' relpose='1 2'/></equality></mujoco>",
+       "a.xml:1:19: <weld> is left out: expected 7 numbers for 'relpose' of <weld>, found '1 2'"},
+      {"<mujoco><tendon><fixed/></tendon></mujoco>",
+       "a.xml:1:17: <fixed> is left out: expected at least one joint in a tendon"},
+      {"<mujoco><tendon><spatial><site site='a'/></spatial></tendon></mujoco>",
+       "a.xml:1:17: <spatial> is left out: expected at least two sites in a tendon"},
+      {"<mujoco><tendon><fixed damping='-1'/></tendon></mujoco>",
+       "a.xml:1:17: <fixed> is left out: expected 'damping' of 0 or more, found -1"},
+      {"<mujoco><worldbody><geom size='1' condim='2'/></worldbody></mujoco>",
+       "a.xml:1:20: <geom> is left out: expected 1, 3, 4 or 6 for 'condim', found 2"},
+      {"<mujoco><worldbody><site name='s' pos='0 nan 0'/></worldbody></mujoco>",
+       "a.xml:1:20: <site> 's' is left out: expected 3 numbers for 'pos' of <site>, found '0 nan 0'"},
+      {"<mujoco><actuator><motor joint='j' ctrlrange='2 1'/></actuator></mujoco>",
+       "a.xml:1:19: <motor> is left out: expected a lower and a higher number for 'ctrlrange' of <motor>"},
+      {"<mujoco><sensor><gyro site='s' noise='x'/></sensor></mujoco>",
+       "a.xml:1:17: <gyro> is left out: expected a number for 'noise' of <gyro>, found 'x'"},
+      {"<mujoco><contact><pair geom1='a' geom2='b' margin='x'/></contact></mujoco>",
+       "a.xml:1:18: <pair> is left out: expected a number for 'margin' of <pair>, found 'x'"},
+      {"<mujoco><asset><mesh name='m' vertex='1 2'/></asset><worldbody><geom type='mesh' "
+       "mesh='m'/></worldbody></mujoco>",
+       "a.xml:1:16: <mesh> 'm' is left out: expected 12 to"},
+  };
+  for (const auto& [text, message] : cases) CHECK_THAT(named(text), Catch::StartsWith(message));
+}
+
+TEST_CASE("a body has the mass of what is not left out, or 10 g") {
+  const auto body = [](const std::string& content) { return Read(world("<body><joint/>" + content + "</body>")); };
+  const std::string bad = "<geom type='box' size='1 0 1'/>";
+  CHECK(body(bad + "<geom size='1' mass='3'/>").body(1).mass.mass == Approx(3));
+  CHECK(body(bad + "<body><geom size='1' mass='3'/></body>").body(1).mass.mass == 0);  // that of its part
+  CHECK(body("<inertial pos='0 0 0' diaginertia='1 1 1'/><geom size='1' mass='3'/>").body(1).mass.mass == Approx(3));
+  const Read light = body(bad);
+  CHECK(light.body(1).mass.mass == Approx(0.01));
+  CHECK_THAT(light.messages(), Catch::Contains("a.xml:1:20: a <body> that moves and has no mass gets 10 g"));
+  CHECK(body("<geom size='1' mass='0'/>").body(1).mass.mass == 0);  // as the file says
 }
 
 TEST_CASE("a model that is nested too deeply is refused") {
@@ -162,7 +199,7 @@ TEST_CASE("the mass of an ellipsoid is added only if its group is in inertiagrou
   CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='2'/>") == Approx(3));
   CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='2' group='5'/>") == Approx(1));
   CHECK(mass("<geom type='ellipsoid' size='.1 .2 .3' mass='0'/>") == Approx(1));
-  CHECK_THAT(failure(world("<body><geom type='ellipsoid'/></body>")), Catch::Contains("the 'size' of an ellipsoid"));
+  CHECK_THAT(named(world("<body><geom type='ellipsoid'/></body>")), Catch::Contains("the 'size' of an ellipsoid"));
 }
 
 TEST_CASE("unsupported attributes of a default are reported too") {
