@@ -54,6 +54,8 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
   };
   a.ignore({"material", "rgba", "user", "hfield", "fitscale", "mass", "mesh"});
 
+  if (const double mass = weight().of(1); mass < 0)
+    throw g.from.error(fmt::format("expected a mass or density of 0 or more, found {}", mass));
   // What is not supported, and what is only seen: its mesh is not loaded.
   const auto without = [&](const std::string& what) {
     unsupported_.add(g.from, what);

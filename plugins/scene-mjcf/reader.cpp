@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -213,6 +214,10 @@ void Reader::inertial(const Element& e, const Scope& scope) {
   }
   m.center = scope.frame.position + scope.frame.rotation * m.center;
   m.inertia = scope.frame.rotation * m.inertia * scope.frame.rotation.transpose();
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(m.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (m.mass < 0 || moments[0] < -1e-9 * moments[2])
+    throw e.error(fmt::format("expected a mass and moments of inertia of 0 or more, found {:g} and {:g}, {:g}, {:g}",
+                              m.mass, moments[0], moments[1], moments[2]));
   b.mass = m;
   b.inertiaAxes = scope.frame.rotation * turn;
   b.hasInertial = true;

@@ -163,7 +163,7 @@ TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
   const auto in = [](const std::string& s) { return "<mujoco model='m'><worldbody>" + s + "</worldbody></mujoco>"; };
   const std::pair<std::string, const char*> cases[] = {
       {in("<body><freejoint/></body>"), "m.xml:1:30: a body that moves needs a mass above 0"},
-      {in("<body name='a'><freejoint/><inertial mass='1' diaginertia='1 1 -1'/></body>"),
+      {in("<body name='a'><freejoint/><inertial mass='1' diaginertia='1 1 0'/></body>"),
        "m.xml:1:30: cannot make the body 'a'"},
       {in("<body><joint name='j'/><geom size='1'/><body><joint name='j'/><geom size='1'/></body></body>"),
        "there are two joints 'j'"},

@@ -156,6 +156,14 @@ TEST_CASE("a body has the mass of what is not left out, or 10 g") {
   CHECK(body(bad + "<geom size='1' mass='3'/>").body(1).mass.mass == Approx(3));
   CHECK(body(bad + "<body><geom size='1' mass='3'/></body>").body(1).mass.mass == 0);  // that of its part
   CHECK(body("<inertial pos='0 0 0' diaginertia='1 1 1'/><geom size='1' mass='3'/>").body(1).mass.mass == Approx(3));
+  for (const char* const inertia :
+       {"mass='-1' diaginertia='1 1 1'", "mass='1' diaginertia='1 1 -1'", "mass='1' fullinertia='1 1 1 0 0 2'"}) {
+    const Read r = body("<geom size='1' mass='3'/><inertial pos='0 0 0' " + std::string(inertia) + "/>");
+    CHECK(r.body(1).mass.mass == Approx(3));
+    CHECK_THAT(r.messages(), Catch::StartsWith("a.xml:1:59: <inertial> is left out: expected a mass and moments of "
+                                               "inertia of 0 or more, found "));
+  }
+  CHECK(body("<geom size='1' mass='3'/><geom size='1' mass='-2'/>").body(1).mass.mass == Approx(3));
   const Read light = body(bad);
   CHECK(light.body(1).mass.mass == Approx(0.01));
   CHECK_THAT(light.messages(), Catch::Contains("a.xml:1:20: a <body> that moves and has no mass gets 10 g"));
