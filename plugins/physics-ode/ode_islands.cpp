@@ -137,15 +137,23 @@ void OdeSolver::solveDirectly(double dt) {
   // In one thread ODE's callback tells the order.
   w.listOrder = w.exactReplay && !w.threads->parallel();
   if (w.exactReplay && !w.listOrder) findOrder(w);
+  // Recorded sessions have what ODE made of it.
+  const MessageCapture strict(engine_.messages_.last, !w.exactReplay);
+  w.threads->setStrict(!w.exactReplay);
   dWorldStep(w.id, dt);
   w.threads->takeMessage(engine_.messages_.last);
 }
 
 void OdeSolver::solve(const engine::Step& step) {
+  world_.order.clear();
+  solveIslands(step);
+  if (!world_.exactReplay) listMoved(step);
+}
+
+// Of a recorded session the order counts, which ODE's callback and findOrder() tell.
+void OdeSolver::listMoved(const engine::Step& step) {
   WorldData& w = world_;
   w.order.clear();
-  solveIslands(step);
-  if (w.exactReplay) return;  // where alone the order counts
   for (Index i = 0; i < w.bodies.size(); ++i)
     if (w.enabled[i] && step.steps(i)) w.order.push_back(i);
 }
@@ -174,15 +182,42 @@ void OdeSolver::solveIslands(const engine::Step& step) {
 
   // The iterative solver with only these, in one thread and always with the same seed.
   exclude(w, directRows, false);
-  {
-    const std::lock_guard lock(quickStepMutex());
-    dRandSetSeed(1);
-    w.threads->setSingleThreaded(true);
-    w.listOrder = w.exactReplay;
-    dWorldQuickStep(w.id, step.dt);
-    w.threads->setSingleThreaded(false);
-  }
+  solveApproximately(step.dt);
   include(w);
+}
+
+void OdeSolver::solveApproximately(double dt) {
+  WorldData& w = world_;
+  const std::lock_guard lock(quickStepMutex());
+  dRandSetSeed(1);
+  w.threads->setSingleThreaded(true);
+  w.listOrder = w.exactReplay;
+  dWorldQuickStep(w.id, dt);
+  w.threads->setSingleThreaded(false);
+}
+
+bool OdeSolver::excludeMoved(const engine::Step& step) {
+  WorldData& w = world_;
+  const auto open = [&](Index i) { return w.needed[i] && w.bodies[i].movedStep != w.steps; };
+  for (const auto& [a, b] : w.links)
+    if (open(a) != open(b)) return false;
+  for (const engine::Contact& c : step.contacts)
+    if (c.solve && c.bodyA != kNone && c.bodyB != kNone && open(c.bodyA) != open(c.bodyB)) return false;
+  w.excluded.clear();
+  for (Index i = 0; i < w.bodies.size(); ++i)
+    if (!open(i) && enabled(w, i)) {
+      dBodyDisable(w.bodies[i].body);
+      w.excluded.push_back(i);
+    }
+  return true;
+}
+
+void OdeSolver::solveAgain(const engine::Step& step) {
+  WorldData& w = world_;
+  ++engine_.approximateSteps_;
+  solveApproximately(step.dt);
+  include(w);
+  listMoved(step);
 }
 
 }  // namespace spark::ode

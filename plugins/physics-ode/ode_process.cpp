@@ -18,6 +18,7 @@ int guards = 0;                                   // number of LibraryGuards
 std::atomic<std::uint64_t> generation = 0;        // number of initialisations of ODE so far
 thread_local std::uint64_t threadGeneration = 0;  // the one for which this thread's data was allocated
 thread_local std::string* receiver = nullptr;     // of messages in this thread
+thread_local bool lcpThrows = false;              // in this thread
 
 std::string textOf(int number, const char* format, va_list arguments) {
   char line[256];
@@ -27,6 +28,7 @@ std::string textOf(int number, const char* format, va_list arguments) {
 
 /// ODE's handler of warnings.
 void onMessage(int number, const char* format, va_list arguments) {
+  if (lcpThrows && number == d_ERR_LCP) throw Failure("ODE reports: " + textOf(number, format, arguments));
   if (receiver) *receiver = textOf(number, format, arguments);
 }
 
@@ -57,20 +59,30 @@ LibraryGuard::~LibraryGuard() {
   dCloseODE();
 }
 
-MessageCapture::MessageCapture(std::string& text) : previous_(receiver) {
+MessageCapture::MessageCapture(std::string& text, bool unsolvedThrows) : previous_(receiver), threw_(lcpThrows) {
   receiver = &text;
+  lcpThrows = unsolvedThrows;
   if (threadGeneration == generation) return;
   const std::lock_guard lock(initMutex);
   dAllocateODEDataForThread(dAllocateMaskAll);
   threadGeneration = generation;
 }
 
-MessageCapture::~MessageCapture() { receiver = previous_; }
+MessageCapture::~MessageCapture() {
+  receiver = previous_;
+  lcpThrows = threw_;
+}
 
 void Messages::report(const Leaf& node) {
   if (last.empty()) return;
   if (isDue()) node.kernel().log().warning("{}: ODE reports: {} (message {})", node.path(), last, count);
   last.clear();
+}
+
+void Messages::mend(const Leaf& node, const std::string& text) {
+  if (isDue())
+    node.kernel().log().warning("{}: {}. The island is solved approximately in this step (message {})", node.path(),
+                                text, count);
 }
 
 void Messages::fail(const Leaf& node, const std::string& text, const std::string& what) {

@@ -30,13 +30,15 @@ struct Failure : Error {
 class MessageCapture {
  public:
   /// `text` receives the last message; it must outlive the capture. Captures may be nested: the innermost receives.
-  explicit MessageCapture(std::string& text);
+  /// `unsolvedThrows`: the direct solver's message that it did not solve an island is a Failure.
+  explicit MessageCapture(std::string& text, bool unsolvedThrows = false);
   ~MessageCapture();
   MessageCapture(const MessageCapture&) = delete;
   MessageCapture& operator=(const MessageCapture&) = delete;
 
  private:
   std::string* previous_;
+  bool threw_;  ///< likewise
 };
 
 /// The messages from ODE to one node, failures among them.
@@ -45,6 +47,8 @@ struct Messages {
   std::int64_t count = 0;  ///< of reported ones
   /// Logs the last message, if there is one, as from `node`: the 1st, 2nd, 4th, 8th ... time.
   void report(const Leaf& node);
+  /// Logs a failure of the direct solver after which the iterative one was taken, likewise.
+  void mend(const Leaf& node, const std::string& text);
   /// Logs a failure as an error, likewise. `what`: what it ended, and what becomes of it.
   void fail(const Leaf& node, const std::string& text, const std::string& what);
 

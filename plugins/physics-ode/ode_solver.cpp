@@ -280,6 +280,20 @@ void abandon(WorldData& w, const engine::Step& step) {
 
 }  // namespace
 
+void OdeSolver::recover(const engine::Step& step, const std::string& failure) {
+  WorldData& w = world_;
+  // ODE may have changed the states and forces of the bodies that it did not move.
+  for (Index i = 0; i < w.bodies.size(); ++i)
+    if (w.needed[i] && w.bodies[i].movedStep != w.steps) w.bodies[i].version = 0;
+  writeState(w, step);
+  if (!w.exactReplay && excludeMoved(step)) {
+    solveAgain(step);
+    if (w.threads->takeFailure().empty()) return engine_.messages_.mend(engine_, failure);
+  }
+  abandon(w, step);
+  engine_.messages_.fail(engine_, failure, kIslandFailed);
+}
+
 void OdeSolver::step(engine::Step& step) {
   WorldData& w = world_;
   const MessageCapture capture(engine_.messages_.last);
@@ -300,7 +314,7 @@ void OdeSolver::step(engine::Step& step) {
     failure = f.what();
     w.threads->takeFailure();
   }
-  if (!failure.empty()) abandon(w, step), engine_.messages_.fail(engine_, failure, kIslandFailed);
+  if (!failure.empty()) recover(step, failure);
   for (const Index i : w.order) step.state.markMoved(i);
   readJoints(w, step);
   readContacts(w, step);

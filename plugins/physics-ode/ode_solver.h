@@ -37,6 +37,15 @@ class OdeSolver : public engine::ISolver {
   void solve(const engine::Step& step);
   /// Runs dWorldStep, with the islands distributed over the kernel's threads.
   void solveDirectly(double dt);
+  /// Runs dWorldQuickStep, in one thread and always with the same seed.
+  void solveApproximately(double dt);
+  void listMoved(const engine::Step& step);
+  /// After a failure of ODE: solves the islands that it left approximately. Where that fails, too, and with
+  /// exactReplay, their bodies have no state.
+  void recover(const engine::Step& step, const std::string& failure);
+  /// Disables what moved in this step, and lists it in w.excluded; false where that would tear an island.
+  bool excludeMoved(const engine::Step& step);
+  void solveAgain(const engine::Step& step);
 
   OdeEngine& engine_;
   WorldData world_;

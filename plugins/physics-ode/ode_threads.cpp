@@ -84,7 +84,7 @@ void IslandThreads::runJobStarts() {
   for (Lane& lane : lanes_) lane.grow(largest);
   jobs_.run(starts_.size(), [this](std::size_t i) {
     Lane& lane = lanes_[i];
-    const MessageCapture capture(lane.message);
+    const MessageCapture capture(lane.message, strict_);
     current = &lane;
     run(lane, *starts_[i]);
     runPosted(lane);

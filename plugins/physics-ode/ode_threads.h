@@ -43,6 +43,8 @@ class IslandThreads {
   /// because ODE reallocates memory when it changes.
   void setParallel(bool on) { parallel_ = on && jobs_.threads() > 1; }
   bool parallel() const { return parallel_; }
+  /// An island that ODE does not solve, by its own message, is a failure.
+  void setStrict(bool on) { strict_ = on; }
   /// Before a step: reports one thread to ODE, and switches parallel() off.
   void setSingleThreaded(bool on) {
     singleThreaded_ = on;
@@ -100,7 +102,7 @@ class IslandThreads {
   void finishDependency(Lane& lane, Call* call);
 
   Jobs& jobs_;
-  bool parallel_ = false, singleThreaded_ = false;
+  bool parallel_ = false, singleThreaded_ = false, strict_ = false;
   std::atomic<bool> failed_{false};  ///< a call failed since the last result was written
   Lane outside_;                     ///< of the thread that steps the world
   std::deque<Lane> lanes_;           ///< of the jobs
