@@ -10,7 +10,7 @@ namespace spark::webots {
 
 namespace {
 
-constexpr std::string_view kSpace = " \t\r\n";
+constexpr std::string_view kBlank = " \t\r\n";
 
 std::string_view opening(Language language) { return language == Language::lua ? "%{" : "%<"; }
 std::string_view closing(Language language) { return language == Language::lua ? "}%" : ">%"; }
@@ -96,7 +96,7 @@ void Splitter::program(std::string_view text, std::size_t offset) {
 void Splitter::addLiteral(std::size_t end, bool nextIsStatement) {
   const std::string_view text = text_.substr(at_, end - at_);
   // Space between two statements means nothing; in Javascript, none may be written between } and else.
-  const bool isSpace = text.find_first_not_of(kSpace) == std::string_view::npos;
+  const bool isSpace = text.find_first_not_of(kBlank) == std::string_view::npos;
   if (!text.empty() && !(isSpace && afterStatement_ && nextIsStatement)) {
     newline(at_);
     out_.program += fmt::format("spark{}write({})", out_.language == Language::lua ? '_' : '$', out_.pieces.size());
