@@ -96,8 +96,7 @@ engine::Mass GeomReader::massOf(Attributes& a, const std::string& type, const We
   if (type == "ellipsoid") return ellipsoidMass(g.shape.lengths / 2, weight);
   if (type != "mesh") return shapeMass(g.shape, weight, g.from);
   const engine::Mass out = meshMass(a, weight, g.from);
-  if (!(out.mass > 0))
-    unsupported_.add(g.from, fmt::format("{} adds no mass to its body: its mesh is flat", g.from.named()));
+  if (!(out.mass > 0)) unsupported_.add(g.from, "a <geom> adds no mass to its body: its mesh is flat");
   return out;
 }
 
@@ -107,7 +106,7 @@ engine::Mass GeomReader::meshMass(Attributes& a, const Weight& weight, const Ele
   const MeshInertia inertia = mesh.inertia.value_or(usual);
   if (hasVolume(mesh.solid(), inertia)) return mjcf::meshMass(mesh.solid(), weight, geom, inertia);
   if (!mesh.hull) return {0, Vec3::Zero(), Mat3::Zero()};
-  unsupported_.add(geom, fmt::format("{} weighs as the convex hull of its mesh, which has no volume", geom.named()));
+  unsupported_.add(geom, "a <geom> weighs as the convex hull of its mesh, which has no volume");
   return mjcf::meshMass(*mesh.hull, weight, geom, MeshInertia::exact);
 }
 

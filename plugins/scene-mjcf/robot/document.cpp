@@ -156,16 +156,16 @@ void Defaults::forEach(const Element& user, std::span<const std::string_view> ta
 
 // ---- what is not supported ----
 
-void Unsupported::add(const Element& e, const std::string& what) {
+void Unsupported::add(const Element& e, const std::string& what, const std::string& kind) {
   const void* const place =
       e.node ? static_cast<const void*>(e.node.internal_object()) : e.file->text.data() + e.offset;
-  if (!seen_.emplace(place, what).second) return;
-  if (const auto known = known_.find(what); known != known_.end())
+  if (!seen_.emplace(place, kind).second) return;
+  if (const auto known = known_.find(kind); known != known_.end())
     ++entries_[known->second].times;
   else if (entries_.size() == kMaxKinds)
     ++more_;
   else
-    known_.emplace(what, entries_.size()), entries_.push_back({what, e.where(), 1});
+    known_.emplace(kind, entries_.size()), entries_.push_back({what, e.where(), 1});
 }
 
 bool Unsupported::attempt(const Element& e, const std::function<void()>& work) {
@@ -176,11 +176,14 @@ bool Unsupported::attempt(const Element& e, const std::function<void()>& work) {
     throw;
   } catch (const Error& error) {
     std::string why = error.what();
-    if (const std::string place = e.where() + ": "; why.starts_with(place)) why.erase(0, place.size());
+    const std::string place = e.where() + ": ";
+    const bool here = why.starts_with(place);
+    if (here) why.erase(0, place.size());
     constexpr std::string_view kBecause = "\n  because: ";
     for (std::size_t at = why.find(kBecause); at != std::string::npos; at = why.find(kBecause, at))
       why.replace(at, kBecause.size(), ": ");
-    add(e, fmt::format("{} is left out: {}", e.named(), why));
+    const std::string what = fmt::format("{} is left out: {}", e.named(), why);
+    add(e, what, here ? what : fmt::format("<{}> is left out: {}", e.tag(), why));
     return false;
   }
 }

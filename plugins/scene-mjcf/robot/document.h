@@ -106,14 +106,16 @@ class Unsupported {
   void element(const Element& e);
   void attribute(const Element& e, const std::string& name);
   /// Something else: one sentence per `what`, with the first place. The same of one element counts once.
-  void add(const Element& e, const std::string& what);
+  void add(const Element& e, const std::string& what) { add(e, what, what); }
   /// Does `work` for an element. If it fails, the element is named with the reason, as left out, and false is returned.
-  /// Throws LimitError.
+  /// Those that fail because of the same place elsewhere, such as a mesh, are one kind. Throws LimitError.
   bool attempt(const Element& e, const std::function<void()>& work);
   /// "a.xml:3:4: the element <tendon> is not supported (and 3 more)", in order of the first places.
   std::vector<std::string> sentences() const;
 
  private:
+  /// `kind`: of which only the first is written.
+  void add(const Element& e, const std::string& what, const std::string& kind);
   static constexpr std::size_t kMaxKinds = 100;  ///< more are counted only
   struct Entry {
     std::string what, where;
@@ -121,7 +123,7 @@ class Unsupported {
   };
   std::vector<Entry> entries_;
   std::set<std::pair<const void*, std::string>> seen_;     ///< elements and what was said of them
-  std::map<std::string, std::size_t, std::less<>> known_;  ///< index in entries_
+  std::map<std::string, std::size_t, std::less<>> known_;  ///< kinds: index in entries_
   int more_ = 0;
 };
 

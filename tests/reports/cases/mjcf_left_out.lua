@@ -4,7 +4,7 @@
 -- engines: all
 -- expect: mjcf_left_out.xml:6:5: <mesh> 'torn' is left out: expected 12 to
 -- expect: mjcf_left_out.xml:12:7: <geom> 'top' is left out: mjcf_left_out.xml:3:5: cannot read the mesh 'nowhere/lid.stl'
--- expect: mjcf_left_out.xml:13:7: <geom> 'paper' adds no mass to its body: its mesh is flat
+-- expect: mjcf_left_out.xml:13:7: a <geom> adds no mass to its body: its mesh is flat
 -- expect: mjcf_left_out.xml:13:7: a <geom> is left out: a flat mesh has no convex hull
 -- expect: mjcf_left_out.xml:14:7: <geom> 'spots' is left out: mjcf_left_out.xml:5:5: the mesh has no convex hull
 -- expect: mjcf_left_out.xml:15:7: <geom> 'rag' is left out: there is no <mesh> 'torn'
