@@ -95,7 +95,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
 engine::Mass GeomReader::massOf(Attributes& a, const std::string& type, const Weight& weight, const Geom& g) {
   if (type == "ellipsoid") return ellipsoidMass(g.shape.lengths / 2, weight);
   if (type != "mesh") return shapeMass(g.shape, weight, g.from);
-  const engine::Mass out = meshMass(a, weight, g.from);
+  engine::Mass out = meshMass(a, weight, g.from);
   if (!(out.mass > 0)) unsupported_.add(g.from, "a <geom> adds no mass to its body: its mesh is flat");
   return out;
 }
