@@ -52,7 +52,8 @@ function robotWorld(t)
   local engine    = option{ name = "engine", default = t.engine, doc = "Class of the engine." }
   local timestep  = option{ name = "timestep", default = 0.005, doc = "Length of the engine's steps, in seconds." }
   local stiffness = option{ name = "stiffness", default = t.stiffness,
-    doc = "Of the controllers that hold every hinge where it is, until an agent drives it, at most, in Nm/rad; 0: none." }
+    doc = "Of the controllers that hold every hinge where it is, until an agent drives it, at most, in Nm/rad; " ..
+          "0: none." }
   local most      = option{ name = "agents", default = 1, doc = "How many agents may drive a robot each; 0: no port." }
   local apart     = option{ name = "apart", default = 2.0, doc = "From one robot to the next, in metres." }
 

@@ -5,7 +5,7 @@
 /// A body that is at rest sleeps: the solver skips it. It may do so as long as a step would leave it where it is, and
 /// that depends on
 ///
-///     what touches it     poses, shapes, surfaces, and who collides with whom: all of it shows in its contacts. The
+///     what touches it     poses, shapes, surfaces, and which pairs collide: all of it shows in its contacts. The
 ///                         watch keeps a digest of those with which it fell asleep; with others it wakes.
 ///     all else            joints, motors, masses, gravity: WorldModel wakes the bodies when one is set to another
 ///     value.
