@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 namespace spark::mjcf {
 
 namespace {
@@ -157,25 +155,10 @@ constexpr Word kVocabulary[] = {
     {"sensor", kSection, "", "", Word::foreign},
 };
 
-bool holds(std::string_view list, std::string_view word) {
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find(' '), list.size());
-    if (list.substr(0, end) == word) return true;
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return false;
-}
-
-const Word* wordOf(std::string_view tag, std::string_view in) {
-  const auto found = std::find_if(std::begin(kVocabulary), std::end(kVocabulary),
-                                  [&](const Word& w) { return w.element == tag && (w.in == in || holds(w.in, in)); });
-  return found == std::end(kVocabulary) ? nullptr : found;
-}
-
 void look(Document& document, const Element& e, const Word& word, Unsupported& unsupported, int depth) {
   if (word.content == Word::foreign || depth > Document::kMaxDepth) return;
   for (const pugi::xml_attribute a : e.node.attributes())
-    if (!holds(word.read, a.name()) && !holds(word.idle, a.name())) unsupported.attribute(e, a.name());
+    if (!word.knows(a.name())) unsupported.attribute(e, a.name());
   for (const pugi::xml_node node : e.node.children()) {
     const Element child{node, e.file};
     if (node.type() == pugi::node_pcdata || node.type() == pugi::node_cdata)
@@ -185,7 +168,7 @@ void look(Document& document, const Element& e, const Word& word, Unsupported& u
         if (std::string_view(a.name()) != "file") unsupported.attribute(child, a.name());
   }
   for (const Element& child : document.children(e))
-    if (const Word* const known = wordOf(child.tag(), e.tag()))
+    if (const Word* const known = wordOf(kVocabulary, child.tag(), e.tag()))
       look(document, child, *known, unsupported, depth + 1);
     else
       unsupported.element(child);
@@ -196,7 +179,7 @@ void look(Document& document, const Element& e, const Word& word, Unsupported& u
 std::span<const Word> vocabulary() { return kVocabulary; }
 
 void nameUnknown(Document& document, Unsupported& unsupported) {
-  look(document, document.root(), *wordOf("mujoco", ""), unsupported, 0);
+  look(document, document.root(), *wordOf(kVocabulary, "mujoco", ""), unsupported, 0);
 }
 
 }  // namespace spark::mjcf

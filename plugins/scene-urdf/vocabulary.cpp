@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 #include <string>
 
@@ -61,28 +60,13 @@ constexpr Word kVocabulary[] = {
     {"sensor", "robot/gazebo", "name type", "", Word::foreign, true},
 };
 
-bool holds(std::string_view list, std::string_view word) {
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find(' '), list.size());
-    if (list.substr(0, end) == word) return true;
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return false;
-}
-
-const Word* wordOf(std::string_view tag, std::string_view in) {
-  const auto found = std::find_if(std::begin(kVocabulary), std::end(kVocabulary),
-                                  [&](const Word& w) { return w.element == tag && (w.in == in || holds(w.in, in)); });
-  return found == std::end(kVocabulary) ? nullptr : found;
-}
-
 /// `place`: the element's own, as in Word::in.
 void look(const Element& e, const Word& word, const std::string& place, Unsupported& unsupported) {
   if (word.content == Word::foreign) return;
   for (const pugi::xml_attribute a : e.node.attributes()) {
     const std::string_view name = a.name();
     // Namespaces only say what prefixes mean.
-    if (!holds(word.read, name) && !holds(word.idle, name) && name != "xmlns" && !name.starts_with("xmlns:"))
+    if (!word.knows(name) && name != "xmlns" && !name.starts_with("xmlns:"))
       unsupported.attribute(e, std::string(name));
   }
   std::set<std::string_view> seen;
@@ -93,7 +77,7 @@ void look(const Element& e, const Word& word, const std::string& place, Unsuppor
     }
     if (node.type() != pugi::node_element) continue;
     const Element child{node, e.file};
-    const Word* const known = wordOf(child.tag(), place);
+    const Word* const known = wordOf(kVocabulary, child.tag(), place);
     if (!known)
       unsupported.element(child);
     else if (!seen.insert(known->element).second && !known->repeats)
@@ -108,7 +92,7 @@ void look(const Element& e, const Word& word, const std::string& place, Unsuppor
 std::span<const Word> vocabulary() { return kVocabulary; }
 
 void nameUnknown(const Element& root, Unsupported& unsupported) {
-  look(root, *wordOf("robot", ""), "robot", unsupported);
+  look(root, *wordOf(kVocabulary, "robot", ""), "robot", unsupported);
 }
 
 }  // namespace spark::urdf
