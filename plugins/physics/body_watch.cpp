@@ -28,12 +28,13 @@ void BodyWatch::rouseAll() {
 void BodyWatch::switched(Index body, bool awake) {
   entries_[body].support = {};
   if (awake) entries_[body].counters = {};
+  anyRests_ |= !awake;
 }
 
 void BodyWatch::loaded(Index body, const Counters& counters, const Support& support) {
   entries_[body].counters = counters;
   entries_[body].support = support;
-  anyLoaded_ = true;
+  anyLoaded_ = anyRests_ = true;
   loaded_.push_back({body, world_.state.bodies[body].awake, counters, support});
 }
 
@@ -86,7 +87,7 @@ void BodyWatch::addDigests(const engine::Contacts& contacts, Counts&& counts) {
 }
 
 void BodyWatch::wake(const engine::Contacts& contacts) {
-  if (world_.model.exactReplay) return;
+  if (world_.model.exactReplay || !std::exchange(anyRests_, false)) return;
   std::vector<DynamicState>& bodies = world_.state.bodies;
   addDigests(contacts, [&](Index i) { return !bodies[i].awake; });
   for (Index i = 0; i < bodies.size(); ++i) {
@@ -97,6 +98,7 @@ void BodyWatch::wake(const engine::Contacts& contacts) {
       w.support.known = w.support.slept = false;
       continue;
     }
+    anyRests_ = true;
     const std::uint64_t touching = std::exchange(w.touching, 0);
     if (w.support.known && w.support.digest != touching)
       rouse(i);
@@ -146,6 +148,7 @@ void BodyWatch::putToSleep(const engine::Contacts& contacts, double dt, bool lat
     ++s.version;
     any = true;
   }
+  anyRests_ |= any;
   if (!any || late || world_.model.exactReplay) return;
   // Those that fell asleep now rest on these contacts.
   const auto fell = [&](Index i) { return !world_.state.bodies[i].awake && !entries_[i].support.slept; };

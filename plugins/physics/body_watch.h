@@ -100,6 +100,7 @@ class BodyWatch {
   WorldData& world_;
   std::vector<Entry> entries_;
   std::uint64_t calls_ = 0;  ///< of putToSleep()
+  bool anyRests_ = false;    ///< a body may sleep, or have slept at the last call of wake()
   struct Loaded {
     engine::Index body;
     bool awake;
