@@ -1,8 +1,23 @@
 #include "ball_state_aspect.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 namespace spark {
 
 using soccer::Side;
+
+namespace {
+/// True if the ball's collider touches the trigger box of the goal that `side` defends.
+bool isInGoalBox(const soccer::Pitch& pitch, Side side) {
+  const Ball* ball = pitch.ball()->leaf().ancestor<Ball>();
+  const ICollisionRecorder* recorder = pitch.goalRecorder(side);
+  return ball && recorder &&
+         std::any_of(recorder->colliders().begin(), recorder->colliders().end(),
+                     [ball](const Ref<Leaf>& collider) { return collider && collider->ancestor<Ball>() == ball; });
+}
+}  // namespace
 
 void BallStateAspect::describe(Description<BallStateAspect>& d) {
   using B = BallStateAspect;
@@ -13,21 +28,15 @@ void BallStateAspect::describe(Description<BallStateAspect>& d) {
   d.property("lastValid", &B::lastValid).unit("m").doc("The ball's last position on the field.");
 }
 
-void BallStateAspect::rule(const Event&) {
+void BallStateAspect::rule(const Event& event) {
   GameStateAspect* game = game_.get();
   if (!game) return;
   soccer::Pitch& pitch = game->pitch();
   if (!pitch.ready() || !pitch.ball()) return;
-  const SoccerSettings& s = pitch.settings();
-  position_ = pitch.ballPosition();
+  followBall(pitch, event.step);
   // Teams keep their touches when they swap sides at half time.
   if (std::exchange(swapsSeen_, game->sideSwaps()) != game->sideSwaps()) last_.side = soccer::opponent(last_.side);
-  findTouch(pitch);
-
-  // The limits of the installed base: the ball's radius and 1 mm beyond the lines.
-  const double slack = s.ballRadius + 0.001;
-  onField_ = std::abs(position_.x()) < s.fieldLength / 2 + slack && std::abs(position_.y()) < s.fieldWidth / 2 + slack;
-  if (onField_) lastValid_ = position_;
+  findTouch(pitch, event.step);
   findGoal(pitch);
 
   // The recorders collect the contacts of the next physics phase.
@@ -37,7 +46,7 @@ void BallStateAspect::rule(const Event&) {
 }
 
 void BallStateAspect::rest(const Event&) {
-  kicker_ = 0;
+  kickers_.clear();
   touched_ = false;
   touchedBy_.fill(false);
   inGoal_ = Side::none;
@@ -46,49 +55,111 @@ void BallStateAspect::rest(const Event&) {
     if (auto* r = game->pitch().ballRecorder()) r->clear();
 }
 
-void BallStateAspect::addContact(const soccer::Player* player, const soccer::Player*& first) {
-  if (!player || player->side() == Side::none) return;
-  if (!first) first = player;
+void BallStateAspect::followBall(const soccer::Pitch& pitch, double step) {
+  // The limits of the installed base: the ball's radius and 1 mm beyond the lines.
+  const SoccerSettings& s = pitch.settings();
+  const double slack = s.ballRadius + 0.001;
+  maxX_ = s.fieldLength / 2 + slack, maxY_ = s.fieldWidth / 2 + slack;
+
+  // Where the path of this cycle begins: where the ball was, or, if something placed it since, where it comes from by
+  // its velocity. One that was placed off the field may have crossed a line one second ago, as in the installed base.
+  constexpr double kTopSpeed = 50;  // no ball moves faster by itself than its velocity says and this [m/s]
+  const Vec3 before = std::exchange(position_, pitch.ballPosition()), v = pitch.ball()->state().linearVelocity;
+  const bool jumped = (position_ - before).norm() > (kTopSpeed + v.norm()) * step;
+  Vec3 start = jumped ? Vec3(position_ - v * step) : before;
+  if (jumped && !isOnField(start)) start = position_ - v;
+  onField_ = isOnField(position_);
+  placed_ = jumped && !isOnField(start);
+  from_ = isOnField(start) ? start : lastValid_;
+  if (onField_) lastValid_ = position_;
+}
+
+namespace {
+/// Where on the way from `from` to `to` a coordinate grows beyond `limit`, as a fraction of the way; infinite: it does
+/// not. Both coordinates are towards the line.
+double crossing(double from, double to, double limit) {
+  if (to < limit) return HUGE_VAL;
+  return from < limit ? (limit - from) / (to - from) : 0;
+}
+}  // namespace
+
+BallStateAspect::Line BallStateAspect::crossedLine() const {
+  const double x = std::copysign(1, position_.x()), y = std::copysign(1, position_.y());
+  return crossing(x * from_.x(), x * position_.x(), maxX_) <= crossing(y * from_.y(), y * position_.y(), maxY_)
+             ? Line::goal
+             : Line::touch;
+}
+
+void BallStateAspect::addRival(const soccer::Player* player) {
+  if (!player || player->side() == Side::none || rivals_.size() == rivals_.capacity() ||
+      std::find(rivals_.begin(), rivals_.end(), player) != rivals_.end())
+    return;
+  rivals_.push_back(player);
   touchedBy_[player->side() == Side::right] = true;
 }
 
-void BallStateAspect::findTouch(const soccer::Pitch& pitch) {
-  // Of several players that touch the ball in a cycle the first counts; a kick precedes contacts.
-  const soccer::Player* toucher = nullptr;
+void BallStateAspect::findTouch(soccer::Pitch& pitch, double step) {
+  // A kick precedes contacts.
   touchedBy_.fill(false);
-  if (kicker_ != 0) addContact(pitch.playerOfAgent(std::exchange(kicker_, 0)), toucher);
+  rivals_.clear();
+  for (const int agent : kickers_) addRival(pitch.playerOfAgent(agent));
+  kickers_.clear();
+  const std::size_t kicks = rivals_.size();
   if (auto* recorder = pitch.ballRecorder())
-    for (const Ref<Leaf>& collider : recorder->colliders()) addContact(pitch.playerOf(collider.get()), toucher);
+    for (const Ref<Leaf>& collider : recorder->colliders()) addRival(pitch.playerOf(collider.get()));
+  if (kicks > 0) rivals_.resize(kicks);
+
+  const soccer::Player* toucher = decideTouch(pitch, step);
   touched_ = toucher != nullptr;
   if (!touched_) return;
   newTouch_ = toucher->agent->number() != last_.agent || pitch.now() - last_.time >= kContactGap;
   last_ = {toucher->agent->number(), toucher->side(), toucher->state->unum(), pitch.now()};
 }
 
-void BallStateAspect::findGoal(const soccer::Pitch& pitch) {
-  // The ball's collider touches the trigger box of a goal.
-  inGoal_ = Side::none;
-  const Ball* ball = pitch.ball()->leaf().ancestor<Ball>();
-  for (Side side : {Side::left, Side::right})
-    if (auto* recorder = pitch.goalRecorder(side))
-      for (const Ref<Leaf>& collider : recorder->colliders())
-        if (ball && collider && collider->ancestor<Ball>() == ball) inGoal_ = side;
-  if (inGoal_ != Side::none) return;
+const soccer::Player* BallStateAspect::decideTouch(soccer::Pitch& pitch, double step) {
+  constexpr double kEqual = 1e-4;  // differences of distances that do not count [m]
+  if (rivals_.size() <= 1) return rivals_.empty() ? nullptr : rivals_.front();
+  // The distances before the step, which has pushed the ball away from the nearest.
+  const auto before = [step](const IRigidBody& b) {
+    return Vec3(b.state().position - b.state().linearVelocity * step);
+  };
+  const Vec3 ball = before(*pitch.ball());
+  const auto distance = [&](const soccer::Player* p) {
+    double nearest = HUGE_VAL;
+    for (const IRigidBody* b : p->bodies) nearest = std::min(nearest, (before(*b) - ball).norm());
+    return nearest;
+  };
+  double nearest = HUGE_VAL;
+  for (const soccer::Player* p : rivals_) nearest = std::min(nearest, distance(p));
+  std::erase_if(rivals_, [&](const soccer::Player* p) { return distance(p) > nearest + kEqual; });
+  if (rivals_.size() == 1) return rivals_.front();
 
-  // A fast ball can pass through the box within one step. As in the installed base: it is behind the goal line, was in
-  // front of it one second ago by its velocity, and crossed the line between the posts.
+  // Equally near: the touch of a player that has not let go since its last one continues, otherwise a draw decides.
+  for (const soccer::Player* p : rivals_)
+    if (p->agent->number() == last_.agent && pitch.now() - last_.time < kContactGap) return p;
+  return rivals_[game_->random().below(rivals_.size())];
+}
+
+void BallStateAspect::findGoal(const soccer::Pitch& pitch) {
+  // The whole ball is behind the goal line.
+  inGoal_ = Side::none;
   const SoccerSettings& s = pitch.settings();
-  const double line = s.fieldLength / 2 + s.ballRadius, x = position_.x();
-  const Vec3 v = pitch.ball()->state().linearVelocity;
-  if (std::abs(x) <= line || std::abs(x - v.x()) > line || x * v.x() <= 0) return;
-  const double sinceCrossing = (std::abs(x) - line) / std::abs(v.x());
-  if (std::abs(position_.y() - v.y() * sinceCrossing) < s.goalWidth / 2 &&
-      position_.z() - v.z() * sinceCrossing < s.goalHeight)
-    inGoal_ = x < 0 ? Side::left : Side::right;
+  const double line = s.fieldLength / 2 + s.ballRadius, x = std::abs(position_.x());
+  if (x <= line) return;
+  const Side side = position_.x() < 0 ? Side::left : Side::right;
+
+  // It was placed in the goal, or crossed the line between the posts and below the bar.
+  const auto isInGoal = [&] {
+    if (placed_) return isInGoalBox(pitch, side);
+    const double way = crossing(std::copysign(1, position_.x()) * from_.x(), x, line);
+    const Vec3 at = from_ + (position_ - from_) * way;
+    return std::abs(at.y()) < s.goalWidth / 2 && at.z() < s.goalHeight;
+  };
+  if (isInGoal()) inGoal_ = side;
 }
 
 void BallStateAspect::saveState(StateWriter& out) const {
-  out.write(kicker_);
+  out.write(static_cast<int>(kickers_.size()));  // 0 between cycles
   out.write(last_.agent);
   out.write(static_cast<int>(last_.side));
   out.write(last_.unum);
@@ -101,7 +172,8 @@ void BallStateAspect::saveState(StateWriter& out) const {
 }
 
 void BallStateAspect::loadState(StateReader& in) {
-  kicker_ = static_cast<int>(in.readInteger());
+  in.readInteger();
+  kickers_.clear();
   last_.agent = static_cast<int>(in.readInteger());
   last_.side = static_cast<Side>(in.readInteger());
   last_.unum = static_cast<int>(in.readInteger());

@@ -6,12 +6,21 @@ namespace spark {
 
 /// The state of the ball in this cycle: touches, on the field or not, in a goal or not. Runs after game state and
 /// before the rules.
+///
+/// Lines and goals are judged on the ball's path, the straight line between its positions in two cycles: a fast ball
+/// moves by several times its diameter in between, and near a corner its position alone does not say which line it
+/// crossed first. A ball that a trainer or a script has placed moves on from there.
 class BallStateAspect : public SoccerControlAspect {
   SPARK_CLASS(BallStateAspect, SoccerControlAspect)
  public:
   using Side = soccer::Side;
   /// Contacts of an agent with shorter gaps [s] are one touch, as in the installed base.
   static constexpr double kContactGap = 0.1;
+  /// At most this number of players touch the ball in a cycle; there is no room around it for more.
+  static constexpr std::size_t kMaxRivals = 64;
+
+  /// The lines around the field.
+  enum class Line { goal, touch };
 
   /// A touch of the ball.
   struct Touch {
@@ -21,15 +30,18 @@ class BallStateAspect : public SoccerControlAspect {
     double time = 0;         ///< simulated time of the last contact [s]
   };
 
+  BallStateAspect() {
+    kickers_.reserve(kMaxRivals);
+    rivals_.reserve(kMaxRivals);
+  }
   static void describe(Description<BallStateAspect>& d);
   void rule(const Event& event) override;
   /// Disabled: there are no touches and no goals; the ball's position is not updated.
   void rest(const Event& event) override;
 
-  /// Reports that a kick effector of `agent` acts on the ball: this counts as a touch in this cycle. Of several calls
-  /// in a cycle the first counts.
+  /// Reports that a kick effector of `agent` acts on the ball: this counts as a touch in this cycle.
   void kickedBy(const AgentAspect& agent) {
-    if (kicker_ == 0) kicker_ = agent.number();
+    if (kickers_.size() < kickers_.capacity()) kickers_.push_back(agent.number());
   }
   /// True when a player touches the ball in this cycle.
   bool touched() const { return touched_; }
@@ -43,6 +55,8 @@ class BallStateAspect : public SoccerControlAspect {
   bool onField() const { return onField_; }
   /// The ball's last position on the field [m].
   const Vec3& lastValid() const { return lastValid_; }
+  /// The line that a ball that is not on the field crossed first.
+  Line crossedLine() const;
   /// The side that defends the goal that the ball is in; none: it is in no goal.
   Side inGoalOf() const { return inGoal_; }
   /// The ball's position in this cycle [m].
@@ -53,20 +67,29 @@ class BallStateAspect : public SoccerControlAspect {
   void loadState(StateReader& in) override;
 
  private:
-  void findTouch(const soccer::Pitch& pitch);
-  /// Counts a contact of `player`, unless it is nullptr or has no team; sets `first` when it is the first one.
-  void addContact(const soccer::Player* player, const soccer::Player*& first);
+  /// True if a ball whose centre is there is on the field, lines included.
+  bool isOnField(const Vec3& p) const { return std::abs(p.x()) < maxX_ && std::abs(p.y()) < maxY_; }
+  /// Finds the ball's position, and where its path of this cycle began.
+  void followBall(const soccer::Pitch& pitch, double step);
+  void findTouch(soccer::Pitch& pitch, double step);
+  /// The player whose touch counts in this cycle: the nearest of `rivals_`; nullptr: there is none.
+  const soccer::Player* decideTouch(soccer::Pitch& pitch, double step);
+  void addRival(const soccer::Player* player);
   void findGoal(const soccer::Pitch& pitch);
   std::string lastTeam() const { return soccer::sideName(last_.side); }
   int lastUnum() const { return last_.unum; }
 
-  int kicker_ = 0;  ///< number of the agent that kicks in this cycle; 0: none
+  std::vector<int> kickers_;  ///< numbers of the agents that kick in this cycle; empty between cycles
   bool touched_ = false, newTouch_ = false, onField_ = true;
   std::array<bool, 2> touchedBy_{};  ///< left, right
   std::int64_t swapsSeen_ = 0;       ///< GameStateAspect::sideSwaps()
   Touch last_;
   Side inGoal_ = Side::none;
   Vec3 position_ = Vec3::Zero(), lastValid_ = Vec3::Zero();
+  Vec3 from_ = Vec3::Zero();                   ///< the last position on the ball's path that is on the field [m]
+  bool placed_ = false;                        ///< the ball is where something placed it, off the field
+  double maxX_ = HUGE_VAL, maxY_ = HUGE_VAL;   ///< limits of the centre of a ball on the field [m]
+  std::vector<const soccer::Player*> rivals_;  ///< players that touch the ball in this cycle
 };
 
 }  // namespace spark

@@ -76,7 +76,7 @@ void BallOutRule::judge(const Event&) {
   const Side last = ball().last().side;
   // If no player has touched the ball, it is put back to its last position on the field.
   if (last == Side::none) return pitch().placeBall(Vec3(valid.x(), valid.y(), s.ballRadius));
-  if (std::abs(at.x()) >= s.fieldLength / 2) {
+  if (ball().crossedLine() == BallStateAspect::Line::goal) {
     const Side defending = at.x() < 0 ? Side::left : Side::right;
     last == defending ? referee().awardCorner(opponent(defending)) : referee().awardGoalKick(defending);
   } else {

@@ -117,10 +117,16 @@ TEST_CASE("A ball over the goal line gives a goal kick or a corner kick, dependi
   CHECK(m.score() == std::pair(0, 0));
 }
 
-TEST_CASE("At the corner flag the goal line takes precedence") {
+TEST_CASE("At the corner flag the line that the whole ball crossed first takes precedence") {
   Match m;
-  m.touchThen(m.a1, Match::ballTo(15.02, 10.2));
-  CHECK(m.mode() == "goal_kick_right");
+  SECTION("it is not wholly over the goal line") {
+    m.touchThen(m.a1, Match::ballTo(15.02, 10.2));
+    CHECK(m.mode() == "KickIn_Right");
+  }
+  SECTION("it is not wholly over the touch line") {
+    m.touchThen(m.a1, Match::ballTo(15.2, 10.02));
+    CHECK(m.mode() == "goal_kick_right");
+  }
 }
 
 TEST_CASE("At a goal kick opponents leave the area, and the ball must leave it, too") {

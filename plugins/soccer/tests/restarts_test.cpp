@@ -154,6 +154,79 @@ TEST_CASE("a ball over the goal line gives a goal kick or a corner kick", "[socc
   }
 }
 
+TEST_CASE("near a corner the line that the whole ball crossed first decides", "[soccer]") {
+  Match h;
+  h.touch(2);
+  h.aside();
+  // Over both lines within one cycle; the right team defends the goal line.
+  const bool touchLine = GENERATE(true, false);
+  h.placeBall(52 - (touchLine ? 0.3 : 0.1), 34 - (touchLine ? 0.1 : 0.3), 0.3);
+  h.run(1);
+  h.ball().setVelocity(Vec3(38, 38, 0));
+  h.run(1);
+  CHECK(h.ball().state().position.x() > 52.2);
+  CHECK(h.ball().state().position.y() > 34.2);
+  CHECK(h.mode() == (touchLine ? "KickIn_Right" : "goal_kick_right"));
+}
+
+TEST_CASE("a goal is a ball that is wholly over the line between the posts, however it gets into the net", "[soccer]") {
+  Match h;
+  h.touch(2);
+  h.aside();
+  SECTION("a ball on the line is none") {
+    h.placeBall(52.1, 1);
+    h.run(3);
+    CHECK(h.mode() == "PlayOn");
+  }
+  SECTION("nor one that passes beside the post into the goal") {
+    h.placeBall(51.9, 3.9, 0.3);
+    h.run(1);
+    h.ball().setVelocity(Vec3(25, -25, 0));
+    h.run(1);
+    CHECK(h.mode() == "goal_kick_right");
+  }
+  SECTION("a ball that crosses the line between the posts is one") {
+    h.placeBall(51.9, 3.3, 0.3);
+    h.run(1);
+    h.ball().setVelocity(Vec3(30, 5, 0));
+    h.run(1);
+    CHECK(h.mode() == "Goal_Left");
+  }
+}
+
+TEST_CASE("of two players that touch the ball in a cycle the nearer one does, whichever joined first", "[soccer]") {
+  Match h;
+  const int nearer = GENERATE(1, 3);
+  h.placeBall(0, 10);
+  h.placeAgent(nearer, 0.29, 10);
+  h.placeAgent(4 - nearer, -0.3, 10);
+  h.run(1);
+  CHECK(h.get("/sys/server/gamecontrol/BallStateAspect", "lastTeam").toString() == (nearer == 1 ? "left" : "right"));
+}
+
+TEST_CASE("of two players that are equally near a draw decides, and it holds while both touch the ball", "[soccer]") {
+  Match h;
+  const auto last = [&h] { return h.get("/sys/server/gamecontrol/BallStateAspect", "lastTeam").toString(); };
+  int left = 0;
+  for (int duel = 0; duel < 20; ++duel) {
+    h.setMode("PlayOn");
+    h.aside();
+    h.run(6);
+    std::string first;
+    for (int cycle = 0; cycle < 3; ++cycle) {
+      h.placeBall(0, 10);
+      h.placeAgent(1, 0.29, 10);
+      h.placeAgent(3, -0.29, 10);
+      h.run(1);
+      if (cycle == 0) first = last();
+      CHECK(last() == first);
+    }
+    left += first == "left";
+  }
+  CHECK(left >= 4);
+  CHECK(left <= 16);
+}
+
 TEST_CASE("without any touch so far a ball that goes out is moved back and gives no restart", "[soccer]") {
   Match h;
   h.placeBall(20, 36);
