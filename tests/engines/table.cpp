@@ -14,6 +14,26 @@ using namespace spark::test;
 
 namespace {
 
+/// Which engine to take, for the beginning of the page.
+constexpr const char* kWhich = R"(
+## Which to take
+
+`OdeEngine` is the default. A config that calls `physics(engineOption())`, as those of soccer do, takes another by
+`--set engine=NAME`; your own writes `physics("NAME")`. Scenes, joints, sensors and rules stay as they are.
+
+| you | take | because |
+|---|---|---|
+| repeat recorded sessions of the installed base, or want its soccer to the digit | `OdeEngine` with `exactReplay` | it is that base's own engine |
+| train or simulate many robots on two cores | `ArticulatedEngine` | the same model of joints and contacts as ODE in a fraction of the time; joints that close loops are left to ODE |
+| have a robot in MJCF, or compare with results of MuJoCo | `MujocoEngine` | its trajectories are those of MuJoCo 2.2.2; surfaces, actuators and tendons of MJCF act in full |
+| want joints that do not come apart under load, of robots in URDF | `BulletEngine` | it solves a tree of joints as one (Featherstone) |
+| write an engine | PointMassEngine or LateEngine as examples | the [tutorial](engine-tutorial.md) |
+
+A run repeats bit for bit with each of them on one machine and with one version of its library; two engines never agree
+to the last digit.
+
+)";
+
 /// Energy that a pendulum of 1 m and 1 kg has gained after 10 s, as a fraction of its potential energy at the start.
 double pendulum(EngineWorld& w) {
   const BodyHandle b = w.body({1, 0, 2}, 1, Mat3::Identity() * 1e-4);
@@ -146,6 +166,8 @@ TEST_CASE("the table of engines", "[.table]") {
   chart << barChart("CPU time of a step of 10 ms", groups, where + ".");
   std::ofstream out(SPARK_SOURCES "/docs/engines.md");
   out << "# Engines\n\n![CPU time of a step, by engine](pictures/engines.svg)\n\n"
+      << kWhich
+      << "## Measured\n\n"
          "What each engine can do, how accurate it is and what it costs, in steps of 10 ms. "
          "`build/release/tests/test-engines\n\"[.table]\"` measures, and writes this page and its chart; "
          "`tests/engines` tests every \"yes\" and \"no\".\nPointMassEngine and LateEngine are examples "
@@ -154,8 +176,8 @@ TEST_CASE("the table of engines", "[.table]") {
       << head << "\n"
       << line << "\n"
       << abilities
-      << number("energy gained by a pendulum in 10 s, of its potential energy at the start", "{:+.3f}", pendulum,
-                &engine::Capabilities::joints)
+      << number("energy of a pendulum after 10 s beyond that at the start, as a share of it (below 0: lost)", "{:+.3f}",
+                pendulum, &engine::Capabilities::joints)
       << number(
              "gap in a hinge with 100 kg [mm]", "{:.3f}", [](EngineWorld& w) { return 1e3 * gap(w); },
              &engine::Capabilities::joints)

@@ -65,6 +65,15 @@ class Indices(unittest.TestCase):
     def test_every_config_is_in_the_page_about_configs(self):
         self.named(ROOT / "lua/README.md", sorted(ROOT.glob("lua/*.lua")))
 
+    def test_the_reference_of_house_lua_has_its_functions_and_options(self):
+        rows = dict(re.findall(r"^\| `(\w+)[({].*?` \| (.*?) \|", (ROOT / "lua/README.md").read_text(), re.MULTILINE))
+        code = re.split(r"^function (\w+)", (ROOT / "lua/house.lua").read_text(), flags=re.MULTILINE)
+        for name, body in zip(code[1::2], code[2::2]):
+            with self.subTest(function=name):
+                options = re.findall(r'\boption\{ name = "(\w+)"', body)
+                self.assertIn(name, rows, "add a row to lua/README.md")
+                self.assertLessEqual(set(options), set(re.findall(r"`(\w+)`", rows[name])), "name its options in lua/README.md")
+
     def test_every_page_of_docs_is_in_the_index_of_docs(self):
         self.named(ROOT / "docs/README.md", sorted(set(ROOT.glob("docs/*.md")) - {ROOT / "docs/README.md"}))
 
