@@ -118,7 +118,7 @@ void GameStateAspect::swapSides() {
   std::swap(teams_[0], teams_[1]);
   for (const soccer::Player& p : pitch_.players()) {
     if (p.side() == Side::none) continue;
-    p.state->assign(soccer::opponent(p.side()), p.state->unum(), p.state->team(), false);
+    p.state->assign(soccer::opponent(p.side()), p.state->unum(), p.state->team(), pitch_.settings().announceSides);
     soccer::setTeamMaterials(*p.agent, p.side(), p.state->unum());
   }
   if (auto* scene = pitch_.scene()) scene->markModified();

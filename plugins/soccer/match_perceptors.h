@@ -6,7 +6,8 @@
 
 namespace spark {
 
-/// `(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))`. unum and team are sent once, after init.
+/// `(GS (unum 3) (team left) (sl 0) (sr 0) (t 0.00) (pm BeforeKickOff))`. unum and team are sent after init,
+/// and when the team changes sides.
 class GameStatePerceptor : public Perceptor {
   SPARK_CLASS(GameStatePerceptor, Perceptor)
  public:

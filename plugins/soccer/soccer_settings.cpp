@@ -137,6 +137,10 @@ void SoccerSettings::describe(Description<SoccerSettings>& d) {
       .doc(
           "Percepts have the names of 2004: Vision with Flag, Goal, Ball and Player, GameState with time and playmode "
           "and, once, the sizes of the field. RestrictedVisionPerceptors keep theirs.");
+  d.property("AnnounceSides", &S::announceSides)
+      .doc(
+          "Agents get number and side again in their next GS when their team has changed sides; false: as in the "
+          "installed base, they are not notified.");
   d.property("ConstantTemperature", &S::constantTemperature)
       .doc("AgentState always contains 23 degC, whatever the temperature is.");
   d.property("VisionInterval", &S::visionInterval)

@@ -38,7 +38,8 @@ class SoccerSettings : public Node, public IVariables {
   bool penaltyShootout = false, startAnyFieldPosition = false, automaticQuit = false, useOffside = false;
   int maxNumSafeRepositionAttempts = 100;
   // Percepts and noise
-  bool reportScore = true, labelMessages = true, extraGameState = false, constantTemperature = true, longNames = false;
+  bool announceSides = true, reportScore = true, labelMessages = true, extraGameState = false,
+       constantTemperature = true, longNames = false;
   double beamNoiseXY = 0.05, beamNoiseAngle = 10;
   bool beamWithinFieldWidth = true;
   int sayMsgSize = 20;

@@ -73,12 +73,18 @@ TEST_CASE("With AutomaticQuit the simulation ends 10 s after the match") {
   CHECK(m.over());
 }
 
-TEST_CASE("Teams change sides at half time with their names, shirts and scores, and agents are not notified") {
-  Match m{{{"Soccer.ChangeSidesInSecondHalf", true}}};
+TEST_CASE(
+    "Teams change sides at half time with their names, shirts and scores, and agents are notified unless disabled") {
+  const bool announced = GENERATE(true, false);
+  Match m{{{"Soccer.ChangeSidesInSecondHalf", true}, {"Soccer.AnnounceSides", announced}}};
   m.trainer("(score (left 2)(right 1))");
   const int full = m.monitor().fullMessages();
   m.trainer("(time 300)");
-  m.run(2);
+  m.run(1);
+  CHECK(m.a1.gs("team") == (announced ? "right" : ""));
+  CHECK(m.a1.gs("unum") == (announced ? "1" : ""));
+  CHECK(m.b1.gs("team") == (announced ? "left" : ""));
+  m.run(1);
   CHECK(m.monitor().fullMessages() > full);
   CHECK(m.monitor().number("half") == 2);
   CHECK(m.monitor().text("team_left") == "B");

@@ -24,15 +24,17 @@ constexpr double kUpright = radians(40);  // largest tilt
 constexpr double
     kPropped = 1,
     kSits = 1.2;  // time without being upright, or without a foot on the ground, after which it counts as lying [s]
-constexpr double kStill = 1;        // angular speed of a robot at rest [rad/s]
-constexpr double kSlip = 0.78;      // real speed as a fraction of the commanded one
-constexpr double kSettling = 0.03;  // change of angles per cycle towards the stance [rad]
-constexpr double kForgets = 6;      // after this time the count of attempts to get up is reset [s]
-constexpr double kSteady = 0.5;     // time of stepping on the spot after getting up [s]
-constexpr double kBeamEvery = 0.1;  // between two beams [s]
-constexpr double kBeamTime = 1.0;   // from the start of a pause in which it beams [s]
-constexpr double kAskEvery = 1;     // between two inits without an answer [s]
-constexpr int kSaySlots = 22;       // cycles in which each of eleven players speaks once
+constexpr double kStill = 1;             // angular speed of a robot at rest [rad/s]
+constexpr double kSlip = 0.78;           // real speed as a fraction of the commanded one
+constexpr double kSettling = 0.03;       // change of angles per cycle towards the stance [rad]
+constexpr double kForgets = 6;           // after this time the count of attempts to get up is reset [s]
+constexpr double kSteady = 0.5;          // time of stepping on the spot after getting up [s]
+constexpr double kBeamEvery = 0.1;       // between two beams [s]
+constexpr double kBeamTime = 1.0;        // from the start of a pause in which it beams [s]
+constexpr double kSettlesAfter = 0.5;    // from its last beam until it knows its place [s]
+constexpr double kAstray = radians(30);  // of a heading that is the opposite one
+constexpr double kAskEvery = 1;          // between two inits without an answer [s]
+constexpr int kSaySlots = 22;            // cycles in which each of eleven players speaks once
 
 void armsDown(const Build& build, Pose& pose) {
   pose[Joint::rShoulderPitch] = pose[Joint::lShoulderPitch] = radians(-100);
@@ -233,10 +235,22 @@ std::vector<Vec2> HumanoidPlayer::inTheWay(double nearBall) const {
 
 void HumanoidPlayer::takePlace(const Vec2& place, spark::Predicates& actions) {
   standStill();
+  noticeSide();
   if (percepts_.now - pausedSince_ > kBeamTime || percepts_.now - beamAt_ < kBeamEvery) return;
   actions.open("beam").add(place.x()).add(place.y()).add(0).close();
   beamAt_ = percepts_.now;
   posture_.reset();
+}
+
+/// Servers may not announce that teams have changed sides. A player that has beamed stands in its own half and looks
+/// ahead; if the landmarks say the opposite, they are those of the other side.
+void HumanoidPlayer::noticeSide() {
+  const bool settled = percepts_.now - pausedSince_ > kBeamTime + kSettlesAfter;
+  if (!settled || !localisation_.known() || localisation_.place().x() < 1 ||
+      std::abs(localisation_.heading()) < kPi - kAstray)
+    return;
+  percepts_.side = percepts_.side == "left" ? "right" : "left";
+  localisation_.lose();
 }
 
 void HumanoidPlayer::getUp() {

@@ -77,6 +77,7 @@ class HumanoidPlayer {
   Decision decideNow() const;
   void act(const Decision& decision, spark::Predicates& actions);
   void takePlace(const Vec2& place, spark::Predicates& actions);
+  void noticeSide();
   void getUp();
   void walk(const Velocity& velocity);
   void rise();

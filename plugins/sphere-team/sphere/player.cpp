@@ -148,10 +148,12 @@ void SpherePlayer::readVision(const Element& see) {
   }
 }
 
-/// The mean of the corner flags is the centre of the field, their spread its size.
+/// The mean of the corner flags is the centre of the field, their spread its size. The left ones are on the side that
+/// the left team defends, which is ahead for the right team: servers may not announce that teams have changed sides.
 void SpherePlayer::readField(const Element& see) {
   std::array<Point, 4> corner, post;
   int corners = 0, posts = 0;
+  double left = 0;
   for (const Element e : see) {
     const Element pol = e.isList() ? e.named("pol") : Element();
     const std::string_view name = e.head();
@@ -159,10 +161,11 @@ void SpherePlayer::readField(const Element& see) {
     const double d = pol.at(1).number(), h = pol.at(2).number() * (std::numbers::pi / 180),
                  v = pol.at(3).number() * (std::numbers::pi / 180);
     const Point way{d * std::cos(v) * std::cos(h), d * std::cos(v) * std::sin(h)};
-    if (name[0] == 'F' && corners < 4) corner[corners++] = way;
+    if (name[0] == 'F' && corners < 4) left += name[2] == 'L' ? way.x : -way.x, corner[corners++] = way;
     if (name[0] == 'G' && posts < 4) post[posts++] = way;
   }
   if (corners < 4) return;
+  if (!side_.empty()) side_ = left < 0 ? "left" : "right";
   Point mean;
   for (const Point& c : corner) mean = mean + c * 0.25;
   double length = 0, width = 0, goal = 0;
