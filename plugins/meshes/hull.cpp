@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numeric>
+#include <span>
 
 #include "spark/error.h"
 
@@ -76,6 +78,18 @@ double volumeAround(const Vec3& point, const engine::Mesh& m) {
   return sum;
 }
 
+/// For each vertex the number of one at its place, the same for all that are there.
+std::vector<std::uint32_t> placesOf(const engine::Mesh& m) {
+  std::vector<std::uint32_t> order(m.vertices.size() / 3), out(order.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto at = [&](std::uint32_t v) { return std::span(m.vertices).subspan(3 * std::size_t{v}, 3); };
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::ranges::lexicographical_compare(at(a), at(b)); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    out[order[i]] = i > 0 && std::ranges::equal(at(order[i]), at(order[i - 1])) ? out[order[i - 1]] : order[i];
+  return out;
+}
+
 }  // namespace
 
 engine::Mesh hullOf(std::vector<double> points) {
@@ -119,6 +133,21 @@ bool isConvex(const engine::Mesh& surface, const engine::Mesh& hull) {
   const Vec3 middle = middleOf(hull);
   const double whole = volumeAround(middle, hull);
   return std::abs(volumeAround(middle, surface) - whole) < 1e-3 * whole;
+}
+
+bool isClosed(const engine::Mesh& surface) {
+  const std::vector<std::uint32_t> place = placesOf(surface);
+  using Edge = std::pair<std::uint32_t, std::uint32_t>;
+  std::vector<Edge> rising, falling;  // edges by the order of their ends, each as the rising one
+  for (std::size_t t = 0; t + 2 < surface.triangles.size(); t += 3)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = place[surface.triangles[t + i]], to = place[surface.triangles[t + (i + 1) % 3]];
+      if (from < to) rising.emplace_back(from, to);
+      if (to < from) falling.emplace_back(to, from);
+    }
+  std::sort(rising.begin(), rising.end());
+  std::sort(falling.begin(), falling.end());
+  return !rising.empty() && rising == falling;
 }
 
 }  // namespace spark::meshes

@@ -18,4 +18,8 @@ bool hasArea(const engine::Mesh& surface);
 /// True if a surface encloses as much as its convex hull: their volumes differ by less than one part in a thousand.
 bool isConvex(const engine::Mesh& surface, const engine::Mesh& hull);
 
+/// True if a surface encloses a volume, with all triangles seen from outside, or all from inside: each of their edges
+/// is one of two triangles, in opposite directions. Vertices at one place are one.
+bool isClosed(const engine::Mesh& surface);
+
 }  // namespace spark::meshes

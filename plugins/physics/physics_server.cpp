@@ -285,6 +285,16 @@ bool PhysicsServer::useRayScene(const physics::WorldModel& world) {
   return true;
 }
 
+/// A sensor does not sense what moves below `except`: its own robot. What does not move there is ground and walls of
+/// the robot's file, or the case that the sensor at `from` is in or on.
+bool PhysicsServer::isSensed(const engine::Geom& g, const Vec3& from, const Node* except) const {
+  constexpr double kAtSurface = 1e-3;  // m
+  if (!except || !isBelow(colliderOf(g.owner).leaf(), *except)) return true;
+  if (g.body != engine::kNone) return false;
+  const Pose pose = g.shape.shape == engine::Shape::plane ? Pose{} : g.offset;
+  return physics::distanceTo(g.shape, pose.rotation.transpose() * (from - pose.position)) > kAtSurface;
+}
+
 std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direction, double length,
                                              const Node* except) {
   const physics::WorldModel& world = expectWorld();
@@ -293,9 +303,7 @@ std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direc
     throw Error(fmt::format(
         "{}: expected a ray with finite numbers, a direction longer than 0 and a length of 0 or more", path()));
   const Vec3 unit = direction / norm;
-  const physics::Accepts accepts = [&](const engine::Geom& g) {
-    return !except || !isBelow(colliderOf(g.owner).leaf(), *except);
-  };
+  const physics::Accepts accepts = [&](const engine::Geom& g) { return isSensed(g, from, except); };
   const auto hit = useRayScene(world) ? rays_.castRay(from, unit, length, accepts)
                                       : physics::castRay(world.model(), world.state(), from, unit, length, accepts);
   if (!hit) return std::nullopt;
@@ -345,7 +353,7 @@ void PhysicsServer::listen(const SoundCone& cone, int rings, const Node* except,
     const std::lock_guard lock(raysUpdate_);
     rays_.update(world.model(), world.state(), world.poses());
   }
-  const auto counts = [&](const engine::Geom& g) { return !except || !isBelow(colliderOf(g.owner).leaf(), *except); };
+  const auto counts = [&](const engine::Geom& g) { return isSensed(g, cone.apex, except); };
   const physics::Accepts accepts = std::cref(counts);
   thread_local std::vector<physics::RayScene::GeomEcho> heard;
   heard.clear();

@@ -64,6 +64,7 @@ class PhysicsServer : public Node, public IPhysicsServer, public IHearing {
   /// The same; throws Error when there is none.
   physics::WorldModel& expectWorld();
   bool useRayScene(const physics::WorldModel& world);
+  bool isSensed(const engine::Geom& g, const Vec3& from, const Node* except) const;
   /// Collects bodies, colliders and handlers again when the shape of the scene changed. False when there is no world.
   bool refresh();
   void collect(const Node& scene);

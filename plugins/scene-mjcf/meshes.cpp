@@ -5,7 +5,7 @@
 #include <Eigen/Geometry>
 #include <filesystem>
 
-#include "meshes/hull.h"
+#include "meshes/kept_hulls.h"
 
 namespace spark::mjcf {
 
@@ -105,14 +105,15 @@ void Meshes::load(Asset& m, Unsupported& unsupported) {
     at = rounded(rounded(m.rotation.transpose() * moved).cwiseProduct(m.scale));
     if (!at.allFinite()) throw m.from.error("expected vertices of finite numbers");
   }
+  const auto read = std::make_shared<const engine::Mesh>(std::move(surface));
   Mesh mesh;
   try {
-    mesh.hull = std::make_shared<const engine::Mesh>(meshes::hullOf(v));
+    mesh.hull = meshes::keptHullOf(read);
   } catch (const Error& e) {
-    if (surface.triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
+    if (read->triangles.empty()) throw Error(m.from.where() + ": the mesh has no convex hull", e);
     unsupported.add(m.from, "a flat <mesh> has no convex hull: its triangles collide, on bodies that do not move");
   }
-  mesh.surface = surface.triangles.empty() ? mesh.hull : std::make_shared<const engine::Mesh>(std::move(surface));
+  mesh.surface = read->triangles.empty() ? mesh.hull : read;
   mesh.weighsAsHull = m.inertia == "convex";
   if (m.inertia == "exact" || m.inertia == "convex") mesh.inertia = MeshInertia::exact;
   if (m.inertia == "legacy") mesh.inertia = MeshInertia::legacy;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "meshes/hull.h"
+#include "meshes/kept_hulls.h"
 
 namespace spark::urdf {
 
@@ -150,7 +151,7 @@ GeometryReader::ReadHull GeometryReader::hullOf(const Element& e, const std::str
   const bool hasTriangles = !surface->triangles.empty();
   ShapeDescription s{.shape = Shape::convex};
   try {
-    s.mesh = std::make_shared<const engine::Mesh>(meshes::hullOf(surface->vertices));
+    s.mesh = meshes::keptHullOf(surface);
     if (hasTriangles) surfaces_[s.mesh.get()] = surface;
   } catch (const Error& error) {
     const bool isFlat = hasTriangles && meshes::hasArea(*surface);

@@ -7,7 +7,7 @@
 
 #include "base_nodes.h"
 #include "meshes/hull.h"
-#include "robot/geom_mass.h"
+#include "meshes/kept_hulls.h"
 
 namespace spark::webots {
 
@@ -16,11 +16,12 @@ using engine::ShapeDescription;
 
 namespace {
 
-constexpr int kCollisionGroup = 3;  // not shown where a body has shapes that are seen
+constexpr std::uint32_t kMostInRow = 4096;  ///< points of an ElevationGrid
+constexpr int kCollisionGroup = 3;          // not shown where a body has shapes that are seen
 
 /// Geometries that are not read.
 bool isOtherGeometry(std::string_view type) {
-  static constexpr std::string_view kTypes[] = {"Cone", "ElevationGrid", "Extrusion", "IndexedLineSet", "PointSet"};
+  static constexpr std::string_view kTypes[] = {"Cone", "Extrusion", "IndexedLineSet", "PointSet"};
   return std::find(std::begin(kTypes), std::end(kTypes), type) != std::end(kTypes);
 }
 
@@ -50,7 +51,7 @@ void GeometryReader::shape(const Node& node, const Frame& frame, mjcf::Body& bod
   });
 }
 
-void GeometryReader::bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body) {
+void GeometryReader::bounds(const Node& node, const Frame& frame, std::optional<double> density, mjcf::Body& body) {
   r_.visit(node);
   if (node.type != "Shape" && !isGroup(node.type)) return addBounds(node, frame, density, body);
   Fields f(node, r_.unsupported);
@@ -64,7 +65,7 @@ void GeometryReader::bounds(const Node& node, const Frame& frame, double density
   f.finish();
 }
 
-void GeometryReader::addBounds(const Node& node, const Frame& around, double density, mjcf::Body& body) {
+void GeometryReader::addBounds(const Node& node, const Frame& around, std::optional<double> density, mjcf::Body& body) {
   const Frame frame = standing(node, around);
   r_.leaveOut(node, "a bounding object", [&] {
     auto shape = geometry(node, frame, true);
@@ -73,11 +74,26 @@ void GeometryReader::addBounds(const Node& node, const Frame& around, double den
     g.from = node.element();
     g.pose = frame.pose;
     g.group = kCollisionGroup;
-    if (shape->shape != Shape::plane)
-      g.mass = mjcf::moved(mjcf::shapeMass(*shape, {.density = density, .mass = {}}, g.from), frame.pose);
+    // As in Webots, planes and grids have no mass.
+    if (density && shape->shape != Shape::plane && node.type != "ElevationGrid")
+      g.mass = mjcf::moved(massOf(*shape, {.density = *density, .mass = {}}, node), frame.pose);
     g.shape = std::move(*shape);
     body.geoms.push_back(std::move(g));
   });
+}
+
+/// A mesh weighs what it encloses, whatever it collides as.
+engine::Mass GeometryReader::massOf(const ShapeDescription& shape, const mjcf::Weight& weight, const Node& node) {
+  const auto surface = surfaces_.find(shape.mesh.get());
+  if (shape.shape != Shape::convex || surface == surfaces_.end()) return mjcf::shapeMass(shape, weight, node.element());
+  const engine::Mesh& mesh = *surface->second;
+  if (meshes::isClosed(mesh) && mjcf::hasVolume(mesh, mjcf::MeshInertia::exact))
+    return mjcf::meshMass(mesh, weight, node.element());
+  r_.ignore(node,
+            fmt::format("the surface of this {} is not closed, or its faces do not agree where outside is: its mass "
+                        "and inertia are those of its convex hull",
+                        node.type));
+  return mjcf::shapeMass(shape, weight, node.element());
 }
 
 /// nullopt for what is not supported, which is named.
@@ -106,9 +122,10 @@ std::optional<ShapeDescription> GeometryReader::geometry(const Node& node, const
     if (!collides) return std::nullopt;  // viewers draw no planes
     f.ignore({"size"});
     s.shape = Shape::plane;
-  } else if (node.type == "Mesh" || node.type == "IndexedFaceSet") {
+  } else if (node.type == "Mesh" || node.type == "IndexedFaceSet" || node.type == "ElevationGrid") {
     s.shape = Shape::mesh;
-    f.ignore({"url", "coord", "coordIndex"});
+    f.ignore({"url", "coord", "coordIndex", "height", "xDimension", "yDimension", "zDimension", "xSpacing", "ySpacing",
+              "zSpacing", "thickness"});
     f.finish();
     // What viewers would not draw need not be read.
     if (!collides) return s;
@@ -151,7 +168,7 @@ ShapeDescription GeometryReader::hull(const Node& node, const Vec3& scale) {
   const bool hasTriangles = !surface->triangles.empty();
   s.shape = Shape::convex;
   try {
-    s.mesh = std::make_shared<const engine::Mesh>(meshes::hullOf(surface->vertices));
+    s.mesh = meshes::keptHullOf(surface);
     if (hasTriangles) surfaces_[s.mesh.get()] = surface;
   } catch (const Error& error) {
     if (!hasTriangles || !meshes::hasArea(*surface))
@@ -165,7 +182,7 @@ ShapeDescription GeometryReader::hull(const Node& node, const Vec3& scale) {
 const engine::Mesh& GeometryReader::meshOf(const Node& node) {
   if (const auto known = meshes_.find(&node); known != meshes_.end()) return known->second;
   Fields f(node, r_.unsupported);
-  engine::Mesh mesh = node.type == "Mesh" ? meshFile(f) : faces(f);
+  engine::Mesh mesh = node.type == "Mesh" ? meshFile(f) : node.type == "ElevationGrid" ? grid(f) : faces(f);
   if (!f.flag("ccw", true))
     for (std::size_t t = 0; t + 2 < mesh.triangles.size(); t += 3) std::swap(mesh.triangles[t], mesh.triangles[t + 1]);
   count(node, mesh);
@@ -180,6 +197,41 @@ engine::Mesh GeometryReader::meshFile(Fields& f) {
   } catch (const Error& error) {
     throw Error(fmt::format("{}: cannot read the mesh '{}'", f.element().where(), urls->front()), error);
   }
+}
+
+/// Heights over x and y, or in old files over x and z: there y is up, and z points away from y of here (see
+/// standing()).
+engine::Mesh GeometryReader::grid(Fields& f) {
+  const char* const rows = f.node().yUp ? "zDimension" : "yDimension";
+  const auto count = [&](const char* field) {
+    const double v = f.number(field, 0);
+    if (!(v >= 2 && v <= double(kMostInRow) && v == std::floor(v)))
+      throw f.error(field,
+                    fmt::format("expected a whole number from 2 to {} for '{}', found {}", kMostInRow, field, v));
+    return static_cast<std::uint32_t>(v);
+  };
+  const std::uint32_t nx = count("xDimension"), ny = count(rows);
+  const double dx = f.number("xSpacing", 1), dy = f.number(f.node().yUp ? "zSpacing" : "ySpacing", 1);
+  if (!(dx > 0 && dy > 0)) throw f.element().error("expected distances above 0 between the points of an ElevationGrid");
+  const std::vector<double>* const heights = f.numbers("height");
+  if (heights && heights->size() > std::size_t{nx} * ny)
+    f.wrong("height", fmt::format("expected {} numbers for 'height', found {}; the others are ignored",
+                                  std::size_t{nx} * ny, heights->size()));
+  engine::Mesh mesh;
+  for (std::uint32_t y = 0; y < ny; ++y)
+    for (std::uint32_t x = 0; x < nx; ++x) {
+      const std::size_t i = std::size_t{y} * nx + x;
+      // Heights that are not given are 0.
+      const double height = heights && i < heights->size() ? (*heights)[i] : 0;
+      mesh.vertices.insert(mesh.vertices.end(), {x * dx, f.node().yUp ? -(y * dy) : y * dy, height});
+    }
+  for (std::uint32_t y = 0; y + 1 < ny; ++y)
+    for (std::uint32_t x = 0; x + 1 < nx; ++x) {
+      std::uint32_t right = y * nx + x + 1, above = right - 1 + nx;
+      if (f.node().yUp) std::swap(right, above);
+      mesh.triangles.insert(mesh.triangles.end(), {y * nx + x, right, above, right, y * nx + x + 1 + nx, above});
+    }
+  return mesh;
 }
 
 /// Polygons become fans of triangles. A polygon that names a point that is not there is left out.
@@ -241,9 +293,9 @@ std::optional<std::array<double, 4>> GeometryReader::colorOf(const Node& appeara
             "metalnessMap", "IBLStrength", "normalMap", "normalMapFactor", "occlusionMap", "occlusionMapStrength",
             "emissiveColor", "emissiveColorMap", "emissiveIntensity", "baseColor", "transparency"});
   of.ignore({"ambientIntensity", "emissiveColor", "shininess", "specularColor"});
+  const double opacity = 1 - std::clamp(of.number("transparency", 0), 0.0, 1.0);
   f.finish();
   if (material != &appearance) of.finish();
-  const double opacity = 1 - std::clamp(of.number("transparency", 0), 0.0, 1.0);
   return std::array{std::clamp(rgb.x(), 0.0, 1.0), std::clamp(rgb.y(), 0.0, 1.0), std::clamp(rgb.z(), 0.0, 1.0),
                     opacity};
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "reading.h"
+#include "robot/geom_mass.h"
 
 namespace spark::webots {
 
@@ -21,20 +22,22 @@ class GeometryReader {
   /// A Shape, which is only seen. Throws Error.
   void shape(const Node& node, const Frame& frame, mjcf::Body& body);
   /// A bounding object: a geometry, a Shape, or a Group or Pose of them. `density`: of its parts [kg/m^3]; their masses
-  /// are those of the geoms. Throws Error.
-  void bounds(const Node& node, const Frame& frame, double density, mjcf::Body& body);
+  /// are those of the geoms; nullopt: those do not matter. Throws Error.
+  void bounds(const Node& node, const Frame& frame, std::optional<double> density, mjcf::Body& body);
   /// Of the meshes that were read.
   const mjcf::Surfaces& surfaces() const { return surfaces_; }
 
  private:
   std::optional<engine::ShapeDescription> geometry(const Node& node, const Frame& frame, bool collides);
+  engine::Mass massOf(const engine::ShapeDescription& shape, const mjcf::Weight& weight, const Node& node);
   void count(const Node& node, const engine::Mesh& mesh);
   engine::ShapeDescription hull(const Node& node, const Vec3& scale);
   const engine::Mesh& meshOf(const Node& node);
   engine::Mesh meshFile(Fields& fields);
   engine::Mesh faces(Fields& fields);
+  engine::Mesh grid(Fields& fields);
   std::optional<std::array<double, 4>> colorOf(const Node& appearance);
-  void addBounds(const Node& node, const Frame& frame, double density, mjcf::Body& body);
+  void addBounds(const Node& node, const Frame& frame, std::optional<double> density, mjcf::Body& body);
 
   Reading& r_;
   const ReadMesh& readMesh_;

@@ -42,10 +42,12 @@ std::optional<Mat3> inertiaOf(Fields& f) {
 
 }  // namespace
 
-double densityOf(const Node* physics, mjcf::Unsupported& unsupported) {
-  if (!physics) return kWater;
+std::optional<double> densityOf(const Node* physics, mjcf::Unsupported& unsupported) {
+  if (!physics) return std::nullopt;
   Fields f(*physics, unsupported);
+  const bool isGiven = f.number("mass", -1) >= 0 && f.has("centerOfMass") && f.has("inertiaMatrix");
   const double density = f.number("density", kWater);
+  if (isGiven) return std::nullopt;
   return density > 0 ? density : kWater;
 }
 

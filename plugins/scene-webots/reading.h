@@ -6,6 +6,7 @@
 
 #include <set>
 
+#include "contact_materials.h"
 #include "document.h"
 #include "fields.h"
 #include "robot/model.h"
@@ -47,6 +48,7 @@ using mjcf::LimitError;
 struct Reading {
   const Document& document;
   mjcf::Unsupported& unsupported;
+  ContactMaterials materials{};
   std::size_t visited = 0;  ///< nodes, those that USE names as often as they are used
 
   /// Throws Error when a file has grown absurdly large by USE and PROTOs.

@@ -13,7 +13,7 @@ namespace {
 
 using Kind = Token::Kind;
 
-constexpr std::string_view kHeader = "#VRML_SIM";
+constexpr std::string_view kHeader = "#VRML_SIM", kProtoEnding = ".proto";
 constexpr int kFirstYear = 2022;  ///< since R2022a z is up, and cylinders stand along z
 
 /// Names behind DEF, each of the last node that has it so far.
@@ -33,7 +33,7 @@ class Parser {
 
  private:
   Error error(const Token& at, const std::string& text) const { return errorAt(file_, at.offset, text); }
-  void readHeader();
+  void readHeader(bool isProto);
   std::string word(const char* what);
   void sign(char expected, const std::string& where);
   void readExtern(Parsed& out);
@@ -54,12 +54,18 @@ class Parser {
 };
 
 /// "#VRML_SIM R2023b utf8", or "#VRML_SIM V8.5 utf8" before 2018.
-void Parser::readHeader() {
+void Parser::readHeader(bool isProto) {
   const std::string_view line = std::string_view(file_.text).substr(0, file_.text.find('\n'));
   const std::size_t at = line.find(kHeader);
-  if (at == std::string_view::npos)
-    throw errorAt(file_, 0,
-                  fmt::format("expected '{} R{}a utf8', or another version, in the first line", kHeader, kFirstYear));
+  if (at == std::string_view::npos) {
+    const std::string expected =
+        fmt::format("expected '{} R{}a utf8', or another version, in the first line", kHeader, kFirstYear);
+    if (!isProto) throw errorAt(file_, 0, expected);
+    // The oldest PROTO files have none.
+    problems_.push_back({0, fmt::format("{}; it is read as a file before R{}a", expected, kFirstYear)});
+    yUp_ = true;
+    return;
+  }
   const std::size_t version = line.find_first_not_of(' ', at + kHeader.size());
   int year = 0;
   if (version != std::string_view::npos && line[version] == 'R')
@@ -69,7 +75,8 @@ void Parser::readHeader() {
 }
 
 Parsed Parser::parse() {
-  readHeader();
+  const Token begin = tokens_.peek();
+  readHeader(begin.isWord("PROTO") || begin.isWord("EXTERNPROTO"));
   Parsed out;
   out.yUp = yUp_;
   Names names;
@@ -107,11 +114,15 @@ void Parser::readExtern(Parsed& out) {
   if (!keyword.isWord("EXTERNPROTO")) throw error(keyword, "expected EXTERNPROTO, found " + keyword.named());
   count(keyword, fields_, kMaxFields, "fields");
   const Token url = tokens_.next();
-  constexpr std::string_view kEnding = ".proto";
-  if (url.kind != Kind::text || !url.text.ends_with(kEnding))
+  if (url.kind != Kind::text)
     throw error(url, fmt::format("expected the name of a .proto file in quotes, found {}", url.named()));
+  if (!url.text.ends_with(kProtoEnding)) {
+    problems_.push_back(
+        {url.offset, fmt::format("expected the name of a .proto file, found {}; it is ignored", url.named())});
+    return;
+  }
   std::string name = url.text.substr(url.text.find_last_of("/\\") + 1);
-  name.resize(name.size() - kEnding.size());
+  name.resize(name.size() - kProtoEnding.size());
   out.externs.push_back({std::move(name), url.text, url.offset});
 }
 
@@ -141,7 +152,7 @@ bool Parser::readTemplate(Proto& proto, std::size_t begin) {
 }
 
 Parsed Parser::parseNode() {
-  readHeader();
+  readHeader(true);
   Names names;
   Parsed out;
   if (NodePtr node = readNode(names, 1)) out.nodes.push_back(std::move(node));

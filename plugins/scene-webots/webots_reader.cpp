@@ -64,7 +64,12 @@ class Reader {
 
 World Reader::read() {
   const Frame root{0, {Vec3::Zero(), up(document_.coordinates())}};
-  for (const NodePtr& node : document_.nodes()) readNode(*node, root);
+  // Solids need what it says of their surfaces.
+  const auto isInfo = [](const NodePtr& node) { return node->type == "WorldInfo"; };
+  for (const NodePtr& node : document_.nodes())
+    if (isInfo(node)) readNode(*node, root);
+  for (const NodePtr& node : document_.nodes())
+    if (!isInfo(node)) readNode(*node, root);
   if (world_.models.empty()) return std::move(world_);
   for (mjcf::Model& model : world_.models) {
     dropMovingPlanes(model, r_.unsupported);
@@ -113,7 +118,12 @@ void Reader::readWorldInfo(const Node& node) {
   const double gravity = readGravity(f);
   gravity_ = mjcf::Option{node.element(), "gravity", List{0.0, 0.0, -gravity}};
   if (f.has("basicTimeStep")) world_.basicTimeStep = f.number("basicTimeStep", 32);
-  if (f.has("contactProperties")) r_.ignore(node, "contactProperties are not supported: friction is 1");
+  for (const NodePtr& pair : f.children("contactProperties"))
+    if (pair->type == "ContactProperties")
+      r_.materials.read(*pair, r_.unsupported);
+    else
+      r_.missing(*pair);
+  r_.materials.solve(r_.unsupported);
   f.finish();
 }
 

@@ -11,7 +11,7 @@ namespace spark {
 
 /// `(ACC (n torso) (a 0.00 0.00 9.81))`: proper acceleration as a real accelerometer measures it at its own place, in
 /// the frame of its transform [m/s^2]: (0 0 9.81) upright at rest, 0 in free fall. Beside the centre of mass of a body
-/// that rotates it senses the centripetal and the tangential acceleration, too.
+/// that rotates it senses the centripetal and the tangential acceleration, too. Without a body above it is at rest.
 ///
 /// It samples in the prepare phase, before the step, from the velocities after the two previous steps: its percept is
 /// one cycle older than the rest of the message. The robots of the installed base were tuned with this delay.
@@ -34,10 +34,11 @@ class Accelerometer : public Perceptor {
     d.property("acceleration", &A::acceleration_).unit("m/s^2").state().doc("The last sample, in its own frame.");
     d.link(&A::body_, BodyAround());
     d.link(&A::placed_, Above<Transform>().where<hasBody>("Transform with a body").template child<IPlacedBody>());
+    d.link(&A::physics_, At<IPhysicsServer>());
     d.on<&A::prepare>(phase::kPrepare);
   }
   void sense(Predicates& out, const Event&) override {
-    if (!body_) return;
+    if (!body_ && !isFixed()) return;
     out.open("ACC").pair("n", messageName()).open("a");
     for (const float a : acceleration_) out.add(a);
     out.close().close();
@@ -59,7 +60,9 @@ class Accelerometer : public Perceptor {
  private:
   void prepare(const Event& event) {
     const IRigidBody* const body = body_.get();
-    if (!body || event.step <= 0) return;
+    if (event.step <= 0) return;
+    if (isFixed()) acceleration_ = intoFrame(transform()->world(), -assumedGravity());
+    if (!body) return;
     const engine::BodyState now = body->state();
     const Vec3f velocity = now.linearVelocity.cast<float>();
     Vec3f proper = (velocity - lastVelocity()) / static_cast<float>(event.step) - assumedGravity();
@@ -69,6 +72,8 @@ class Accelerometer : public Perceptor {
     lastRotation_ = now.angularVelocity;
     seen_ = jumps();
   }
+  /// True for a sensor in a world without a body above it.
+  bool isFixed() const { return !body_ && transform() && physics_ && physics_->hasWorld(); }
   /// True for a sensor in a transform of its own, beside that of the body.
   bool isBeside() const {
     const IRigidBody* const body = body_.get();
@@ -100,7 +105,9 @@ class Accelerometer : public Perceptor {
   Vec3f assumedGravity() const {
     if (!gravity_.empty()) return Vec3(gravity_[0], gravity_[1], gravity_[2]).cast<float>();
     const IPlacedBody* const placed = placed_.get();
-    return (placed ? placed->worldGravity() : engine::WorldParameters().gravity).cast<float>();
+    if (placed) return placed->worldGravity().cast<float>();
+    const bool hasWorld = physics_ && physics_->hasWorld();
+    return (hasWorld ? physics_->model().parameters.gravity : engine::WorldParameters().gravity).cast<float>();
   }
   std::vector<double> gravity() const { return gravity_; }
   void setGravity(const std::vector<double>& g) {
@@ -113,6 +120,7 @@ class Accelerometer : public Perceptor {
   }
 
   Link<IRigidBody> body_;
+  Link<IPhysicsServer> physics_;
   Link<IPlacedBody> placed_;     ///< the same body
   std::vector<double> gravity_;  ///< empty: the world's
   Vec3f lastVelocity_ = Vec3f::Zero(), acceleration_ = Vec3f::Zero();

@@ -10,7 +10,8 @@
 namespace spark {
 
 /// Base of sensors that measure distances with rays. Rays start at the sensor's transform and look along its y axis, as
-/// heads do. They meet everything that collides, except the sensor's own agent.
+/// heads do. They meet everything that collides, except what moves of the sensor's own agent, and static colliders of it
+/// that the sensor is in.
 class RayPerceptor : public Perceptor, public ISharedView, public IMeasurement {
   SPARK_CLASS(RayPerceptor, Perceptor)
  public:
@@ -51,7 +52,7 @@ class RayPerceptor : public Perceptor, public ISharedView, public IMeasurement {
   }
   /// The pose of the measurement, world frame.
   const Pose& pose() const { return pose_; }
-  /// The object of its agent, which it does not sense; nullptr: none.
+  /// The object of its agent, of which it does not sense what moves; nullptr: none.
   const Node* agent() const { return agent_; }
   /// The first surface in a direction of the sensor's frame (any length above 0), within maxRange.
   std::optional<RayHit> cast(const Vec3& direction) const {

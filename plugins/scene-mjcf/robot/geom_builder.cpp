@@ -88,7 +88,7 @@ void setContact(Node& collider, const Geom& g) {
   // For the other engines.
   Leaf& surface = collider.create("ContactJointHandler", "surface");
   setProperty(surface, "contactBounceMode", false);
-  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : m.friction[0]);
+  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : g.meanFriction.value_or(m.friction[0]));
   setProperty(surface, "contactPyramid", true);
 }
 

@@ -70,8 +70,6 @@ void SensorBuilder::onJoint(const Sensor& s) {
 void SensorBuilder::onBody(const Sensor& s, const char* className) {
   const auto site = c_.sites.find(s.object);
   if (site == c_.sites.end()) throw s.from.error(fmt::format("there is no site '{}'", s.object));
-  Node& parent = *site->second->parent();
-  if (&parent == &c_.top) return refuse(s, "of what does not move is not supported");
   const bool gyro = std::string_view(className) == "GyroRatePerceptor";
   if (Leaf* const made = makePerceptor(s, *site->second, className))
     addMujocoNoise(s, gyro ? "rt" : "a", gyro ? kDegrees : 1, *made);

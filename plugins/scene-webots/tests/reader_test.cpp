@@ -182,7 +182,7 @@ TEST_CASE("A mirror turns rotations and axes, and leaves shapes as they are") {
 }
 
 TEST_CASE("What is not supported is named with its place") {
-  const Read r(world(R"(WorldInfo { contactProperties [ ContactProperties { } ] colour 1 }
+  const Read r(world(R"(WorldInfo { contactProperties [ ContactProperties { bounce 0.5 } ] colour 1 }
 Robot { children [
   LED { } LED { }
   Lidar { maxRange 5 }
@@ -194,7 +194,8 @@ Robot { children [
 ] })"));
   const std::string m = r.messages();
   for (const char* text :
-       {"a.wbt:2:1: contactProperties are not supported", "the field 'colour' of WorldInfo is not supported",
+       {"a.wbt:2:53: the field 'bounce' of ContactProperties is not supported",
+        "the field 'colour' of WorldInfo is not supported",
         "a.wbt:4:3: the device LED is not supported: only its body and its shapes are read (and 1 more)",
         "a Lidar has one layer", "a Brake in a joint is not supported", "the damping of a Physics is not supported",
         "a Plane that moves is not supported", "the loop is open", "a HingeJoint without an endPoint is ignored",
@@ -247,6 +248,7 @@ TEST_CASE("Fields and nodes that nothing has heard of are named") {
   // "..." is where the field stands.
   for (const std::string around :
        {"WorldInfo { ... }",
+        "WorldInfo { contactProperties ContactProperties { ... } }",
         "Viewpoint { ... }",
         "Background { ... }",
         "Fog { ... }",
@@ -274,6 +276,7 @@ TEST_CASE("Fields and nodes that nothing has heard of are named") {
         "Solid { boundingObject Capsule { ... } }",
         "Solid { boundingObject Plane { ... } }",
         "Solid { boundingObject Mesh { url \"a.stl\" ... } }",
+        "Solid { boundingObject ElevationGrid { xDimension 2 yDimension 2 height [ 0 0 0 1 ] ... } }",
         "Solid { boundingObject Shape { geometry Box { } ... } }",
         "Solid { boundingObject Pose { ... } }",
         "Solid { children [ Pose { ... } ] }",
@@ -302,6 +305,98 @@ TEST_CASE("Fields and nodes that nothing has heard of are named") {
     const std::string text = around.substr(0, at) + "Unheard { }" + around.substr(at + 3);
     CHECK_THAT(warnings(text), Contains(fmt::format("a.wbt:2:{}: ", at + 1)) && Contains("Unheard"));
   }
+}
+
+TEST_CASE("Materials have the friction that contactProperties give their pairs") {
+  const Read r(world(R"(Solid { name "shoe" contactMaterial "rubber" boundingObject Sphere { } }
+Solid { name "floor" boundingObject Sphere { } } Solid { name "skate" contactMaterial "steel" boundingObject Sphere { } }
+Solid { name "toy" contactMaterial "wood" boundingObject Sphere { } }
+WorldInfo { contactProperties [ ContactProperties { material1 "rubber" coulombFriction 3 bumpSound "" }
+  ContactProperties { material1 "ice" material2 "steel" coulombFriction [ 0.25 0.25 ] } ContactProperties { }
+  ContactProperties { material1 "default" material2 "ice" coulombFriction 0.5 }
+  ContactProperties { material1 "steel" coulombFriction 0.1 }
+  ContactProperties { material2 "steel" coulombFriction 0.1 } ] })"));
+  const auto friction = [&](const char* name) { return *r.body(name).geoms[0].meanFriction; };
+  CHECK(friction("floor") == 1);
+  CHECK(friction("shoe") == 5);  // a mean of 3
+  CHECK(friction("skate") == 0);
+  CHECK(friction("toy") == 1);
+  // MuJoCo takes the larger of two, unless one has priority.
+  CHECK(r.body("floor").geoms[0].contact.priority == 0);
+  CHECK(r.body("shoe").geoms[0].contact.priority == 1);
+  CHECK(r.body("shoe").geoms[0].contact.friction[0] == 3);
+  CHECK(r.body("skate").geoms[0].contact.friction[0] == 0.1);
+  CHECK_THAT(r.messages(), Contains("a.wbt:8:3: the friction of \"steel\" on \"default\" is 0.5, not 0.1: surfaces") &&
+                               Contains("a.wbt:9:3: a second ContactProperties for two materials is ignored"));
+}
+
+TEST_CASE("Friction that makes no sense is 1, and named") {
+  const auto names = [](const std::string& fields, const std::string& text) {
+    CHECK_THAT(warnings("WorldInfo { contactProperties ContactProperties { " + fields + " } }"), Contains(text));
+  };
+  names("coulombFriction -3", "expected a coulombFriction of 0 or more, or -1, found -3; 1 is taken");
+  names("coulombFriction [ 1 2 ]", "a coulombFriction that differs in its directions is not supported");
+  CHECK(warnings("WorldInfo { contactProperties ContactProperties { material1 \"a\" coulombFriction -1 } }").empty());
+  CHECK_THAT(warnings("WorldInfo { contactProperties Box { } }"), Contains("a node Box cannot be here"));
+}
+
+TEST_CASE("An elevation grid is a mesh of its heights, in old files over x and z") {
+  const char* const kGrid =
+      "Solid { boundingObject ElevationGrid { xDimension 3 %cDimension 2 xSpacing 2 %cSpacing 5 "
+      "height [ 0 1 2 3 4 ] } physics NULL }";
+  const auto with = [&](char axis) {
+    std::string text = kGrid;
+    for (std::size_t at = 0; (at = text.find("%c")) != std::string::npos;) text.replace(at, 2, 1, axis);
+    return text;
+  };
+  const Read now(world(with('y')));
+  const Read old("#VRML_SIM R2019a utf8\n" + with('z'));
+  for (const Read* const r : {&now, &old}) {
+    INFO(r->messages());
+    const mjcf::Model& m = r->model("solid");
+    const mjcf::Geom& g = m.bodies[1].geoms.at(0);
+    REQUIRE(g.shape.shape == engine::Shape::convex);
+    const engine::Mesh& surface = *m.surfaces.at(g.shape.mesh.get());
+    REQUIRE(surface.triangles.size() == 12);
+    CHECK_FALSE(g.mass);
+    // The fifth point, of 4 m, and the direction in which the triangles look.
+    const bool isOld = r == &old;
+    const Pose pose = compose(m.bodies[1].pose, g.pose);
+    const Vec3 at = pose.position + pose.rotation * surface.vertex(4);
+    CHECK((at - (isOld ? Vec3(5, 2, 4) : Vec3(2, 5, 4))).norm() == Approx(0).margin(1e-9));
+    const auto corner = [&](std::size_t i) { return surface.vertex(surface.triangles[i]); };
+    for (std::size_t t = 0; t < 12; t += 3) CHECK((corner(t + 1) - corner(t)).cross(corner(t + 2) - corner(t)).z() > 0);
+  }
+  CHECK_THAT(warnings("Solid { boundingObject ElevationGrid { xDimension 3 } }"),
+             Contains("expected a whole number from 2 to 4096 for 'yDimension', found 0"));
+  CHECK_THAT(warnings("Solid { boundingObject ElevationGrid { xDimension 2 yDimension 2 xSpacing 0 } }"),
+             Contains("expected distances above 0 between the points of an ElevationGrid"));
+  CHECK_THAT(warnings("Solid { boundingObject ElevationGrid { xDimension 2 yDimension 2 height [ 1 2 3 4 5 ] } }"),
+             Contains("expected 4 numbers for 'height', found 5"));
+}
+
+TEST_CASE("A mesh weighs what it encloses, one that is open as its hull") {
+  // A beam of 1 x 1 m, 3 m long, without the middle third of its upper half.
+  const std::string points =
+      "0 0 0 3 0 0 3 0 1 2 0 1 2 0 0.5 1 0 0.5 1 0 1 0 0 1 0 1 0 3 1 0 3 1 1 2 1 1 2 1 0.5 1 1 0.5 1 1 1 0 1 1";
+  const std::string sides =
+      "0 1 4 5 -1 1 2 3 4 -1 0 5 6 7 -1 9 8 13 12 -1 10 9 12 11 -1 13 8 15 14 -1 1 0 8 9 -1 2 1 9 10 -1 3 2 10 11 -1 "
+      "4 3 11 12 -1 5 4 12 13 -1 6 5 13 14 -1 7 6 14 15 -1";
+  const auto solid = [&](const std::string& faces, const std::string& physics) {
+    return world("Robot { boundingObject IndexedFaceSet { coord Coordinate { point [ " + points + " ] } coordIndex [ " +
+                 faces + " ] } physics Physics { " + physics + " } }");
+  };
+  const Read closed(solid(sides + " 0 7 15 8 -1", "density 2"));
+  CHECK(closed.messages().find("not closed") == std::string::npos);
+  const engine::Mass& m = closed.body("robot").mass;
+  CHECK(m.mass == Approx(2 * 2.5));
+  CHECK((m.center - Vec3(1.5, 0.5, (3 * 0.5 - 0.5 * 0.75) / 2.5)).norm() == Approx(0).margin(1e-12));
+  const Read open(solid(sides, "density 2"));
+  CHECK(open.body("robot").mass.mass == Approx(2 * 3.0));
+  CHECK_THAT(open.messages(), Contains("a.wbt:2:24: the surface of this IndexedFaceSet is not closed"));
+  const Read given(solid(sides, "mass 7 density -1 centerOfMass 0 0 0 inertiaMatrix [ 1 1 1 0 0 0 ]"));
+  CHECK(given.body("robot").mass.mass == 7);
+  CHECK(given.messages().find("not closed") == std::string::npos);
 }
 
 TEST_CASE("A node whose PROTO is not there is empty, at its place and with its name") {

@@ -58,7 +58,8 @@ TEST_CASE("The README's nodes are nodes of Webots or PROTOs that need no file") 
 }
 
 TEST_CASE("The README's fields without effect are named in the log") {
-  const Read r(world(R"(WorldInfo { contactProperties [ ContactProperties { } ] }
+  const Read r(world(R"(WorldInfo { contactProperties [ ContactProperties { bounce 0 bounceVelocity 0 softERP 0.1
+  softCFM 0 rollingFriction 0 0 0 forceDependentSlip 0 frictionRotation 0 0 } ] }
 Robot { contactMaterial "rubber" linearVelocity 1 0 0 angularVelocity 0 0 1 hidden position_0_0 1
   immersionProperties [ ImmersionProperties { } ] physics Physics { mass 1 damping Damping { } }
   children [ HingeJoint { device [ RotationalMotor { acceleration 3 multiplier 2 }

@@ -24,6 +24,19 @@ TEST_CASE("A file that is not of Webots is refused, and templates outside of PRO
   CHECK_THAT(failure(world("Solid { translation %<= x >% 0 0 }")), Contains("a.wbt:2:21: '%<' begins"));
 }
 
+TEST_CASE("The oldest PROTO files have no line with their version") {
+  const Read r("# A stool.\nPROTO Stool [ ] { Solid { boundingObject Cylinder { } physics Physics { } } }");
+  CHECK_THAT(r.messages(), Contains("a.wbt:1:1: expected '#VRML_SIM R2022a utf8', or another version, in the first "
+                                    "line; it is read as a file before R2022a"));
+  CHECK(r.document.coordinates() == "NUE");
+}
+
+TEST_CASE("What EXTERNPROTO names without being a PROTO file is named and ignored") {
+  const Read r(world("EXTERNPROTO \"home.wbt\" Solid { }"));
+  CHECK(r.body("solid").name == "solid");
+  CHECK_THAT(r.messages(), Contains("a.wbt:2:13: expected the name of a .proto file, found \"home.wbt\""));
+}
+
 TEST_CASE("Errors of syntax say where they are, what was expected and what is there") {
   const auto fails = [](const std::string& text, const std::string& message) {
     INFO(text);
@@ -40,7 +53,7 @@ TEST_CASE("Errors of syntax say where they are, what was expected and what is th
   fails("Solid { children [ Solid { } ", "expected a value, found the end of the file");
   fails("} Solid { }", "expected the type of a node, found '}'");
   fails("3", "expected the type of a node, found '3'");
-  fails("EXTERNPROTO \"a.wbt\"", "expected the name of a .proto file in quotes");
+  fails("EXTERNPROTO 3", "expected the name of a .proto file in quotes");
   fails("IMPORTABLE Solid { }", "expected EXTERNPROTO, found 'Solid'");
   fails("PROTO P { }", "expected '[' before the fields of the PROTO, found '{'");
   fails("PROTO P [ fields SFFloat x 1 ] { }", "expected 'field' or ']' in the PROTO 'P', found 'fields'");
