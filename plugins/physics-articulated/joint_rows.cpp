@@ -1,3 +1,4 @@
+#include "api/joint_stops.h"
 #include "rows.h"
 
 // The rows of each joint type, as ODE has them (Smith, ODE manual, "Joint Types and Functions").
@@ -219,7 +220,7 @@ struct JointWriter {
     }
     // A stop pushes only away from itself; equal stops push both ways and do not bounce.
     row.softness = softness(softAxis.stopCfm);
-    double target = -constants.inverseDt * softAxis.stopErp * contact.excess;
+    double target = -engine::stopReturn(joint.type, contact.excess, softAxis.stopErp, 1 / constants.inverseDt);
     if (!locked) {
       (stop == Stop::low ? row.low : row.high) = 0;
       const double rebound = -softAxis.bounce * velocity;

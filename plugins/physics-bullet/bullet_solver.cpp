@@ -46,24 +46,51 @@ void BulletSolver::step(engine::Step& step) {
     if (islands_.isActive(i)) stepIsland(step, i);
 }
 
+/// The number of equal parts in which an island is stepped. Coriolis and centrifugal forces are those of the begin of a
+/// step: in one in which links turn far, light ones at the end of a chain gain energy until they burst.
+int BulletSolver::partsOf(const engine::Step& step, std::size_t island) const {
+  constexpr double kFar = 0.25, kPart = 0.1;  // rad
+  constexpr double kMost = 20;
+  double fastest = 0;  // (rad/s)^2
+  for (const Index i : islands_.trees(island)) {
+    const std::vector<Link>& links = trees_[i]->links();
+    if (links.size() < 2) continue;
+    for (const Link& link : links)
+      fastest = std::max(fastest, step.state.bodies[link.body].angularVelocity.squaredNorm());
+  }
+  const double turn = std::sqrt(fastest) * step.dt;
+  return !(turn > kFar) ? 1 : static_cast<int>(std::min(std::ceil(turn / kPart), kMost));
+}
+
 void BulletSolver::stepIsland(engine::Step& step, std::size_t island) {
-  step_ = &step;
   island_ = island;
-  contactRows_.clear();
-  loopRows_.clear();
+  fullStep_ = step.dt;
   for (const Index i : islands_.trees(island)) {
     if (anyMeasured_) forces_.begin(step, trees_[i]->links());
     trees_[i]->take(step.model, step.state);
-    trees_[i]->accelerate(step.model, step.state, step.dt, scratch_);
-    trees_[i]->multiBody().setCompanionId(-1);
   }
-  rows_.solve(*this, {.dt = step.dt, .direct = direct_, .iterations = iterations_, .tolerance = tolerance_});
-  readContactForces(step);
-  if (anyMeasured_) readLoopForces(step);
+  const int parts = partsOf(step, island);
+  engine::Step part = step;
+  part.dt /= parts;
+  for (int i = 0; i < parts; ++i) stepPart(part, i == 0);
   for (const Index i : islands_.trees(island)) {
-    trees_[i]->move(step.state, step.dt, scratch_);
+    trees_[i]->clearForces(step.state);
     if (measured_[i]) forces_.end(step, trees_[i]->links());
   }
+}
+
+void BulletSolver::stepPart(engine::Step& part, bool first) {
+  step_ = &part;
+  contactRows_.clear();
+  loopRows_.clear();
+  for (const Index i : islands_.trees(island_)) {
+    trees_[i]->accelerate(part.model, part.state, part.dt, scratch_);
+    trees_[i]->multiBody().setCompanionId(-1);
+  }
+  rows_.solve(*this, {.dt = part.dt, .direct = direct_, .iterations = iterations_, .tolerance = tolerance_});
+  readContactForces(part, first);
+  if (anyMeasured_) readLoopForces(part, first);
+  for (const Index i : islands_.trees(island_)) trees_[i]->move(part.state, part.dt, scratch_);
 }
 
 void BulletSolver::write(RowSolver& rows) {
@@ -97,7 +124,8 @@ void BulletSolver::writeContact(RowSolver& rows, Index index) {
   // Along the normal: what is beyond the allowed depth is pushed out.
   const double excess = std::max(0.0, c.depth - world.contactSurfaceLayer);
   row.linear = c.normal;
-  row.target = (s.softErpOn ? s.softErp : world.erp) * excess / dt;
+  // The depth is that of the begin of the whole step.
+  row.target = (s.softErpOn ? s.softErp : world.erp) * excess / fullStep_;
   row.softness = (s.softCfmOn ? s.softCfm : world.cfm) / dt;
   row.low = 0;
   if (s.bounceOn) {
@@ -126,10 +154,11 @@ void BulletSolver::writeContact(RowSolver& rows, Index index) {
   }
 }
 
-void BulletSolver::readLoopForces(engine::Step& step) {
+void BulletSolver::readLoopForces(engine::Step& step, bool first) {
   for (const LoopRows& loop : loopRows_) {
     const engine::Joint& j = step.model.joints[loop.joint];
     engine::JointState sum;
+    if (!first) sum = step.state.joints[loop.joint];
     const auto add = [&](Index body, const Vec3& force, const Vec3& torque, const Vec3& point, Vec3& f, Vec3& t) {
       if (body == kNone) return;
       forces_.add(body, force, torque, point);
@@ -137,7 +166,7 @@ void BulletSolver::readLoopForces(engine::Step& step) {
     };
     for (int i = loop.first; i < loop.last; ++i) {
       const Row& row = rows_.row(i);
-      const double strength = rows_.impulseOfRow(i) / step.dt;
+      const double strength = rows_.impulseOfRow(i) / fullStep_;
       const Vec3 force = strength * row.linear, torque = strength * row.angular;
       add(j.a, force, torque, row.pointA, sum.forceA, sum.torqueA);
       add(j.b, -force, -torque, row.pointB, sum.forceB, sum.torqueB);
@@ -146,7 +175,7 @@ void BulletSolver::readLoopForces(engine::Step& step) {
   }
 }
 
-void BulletSolver::readContactForces(engine::Step& step) {
+void BulletSolver::readContactForces(engine::Step& step, bool first) {
   for (const ContactRows& r : contactRows_) {
     Contact& c = step.contacts[r.contact];
     if (!c.feedback && !anyMeasured_) continue;
@@ -155,8 +184,8 @@ void BulletSolver::readContactForces(engine::Step& step) {
       if (r.friction[i] >= 0)
         impulse +=
             (r.bounded ? rows_.impulseOfRow(r.friction[i]) : rows_.impulseOfFriction(r.friction[i])) * r.tangents[i];
-    const Vec3 force = impulse / step.dt;
-    if (c.feedback) c.forceOnA = force;
+    const Vec3 force = impulse / fullStep_;
+    if (c.feedback) c.forceOnA = first ? force : Vec3(c.forceOnA + force);
     if (!anyMeasured_) continue;
     forces_.add(c.bodyA, force, Vec3::Zero(), c.position);
     forces_.add(c.bodyB, -force, Vec3::Zero(), c.position);

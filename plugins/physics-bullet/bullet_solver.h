@@ -37,10 +37,14 @@ class BulletSolver : public engine::ISolver, private RowSource {
     int first = 0, last = 0;
   };
   void stepIsland(engine::Step& step, std::size_t island);
+  int partsOf(const engine::Step& step, std::size_t island) const;
+  /// Steps the island by a part of the step; `first`: the first one.
+  void stepPart(engine::Step& part, bool first);
   void write(RowSolver& rows) override;
   void writeContact(RowSolver& rows, Index index);
-  void readContactForces(engine::Step& step);
-  void readLoopForces(engine::Step& step);
+  // The means over the parts of a step.
+  void readContactForces(engine::Step& step, bool first);
+  void readLoopForces(engine::Step& step, bool first);
   Side sideOf(Index body);
 
   const int& direct_;
@@ -61,6 +65,7 @@ class BulletSolver : public engine::ISolver, private RowSource {
   // While a step runs.
   const engine::Step* step_ = nullptr;
   std::size_t island_ = 0;
+  double fullStep_ = 0;  ///< s; that of `step_` is a part of it
   std::vector<ContactRows> contactRows_;
   std::vector<LoopRows> loopRows_;
 };

@@ -1,5 +1,7 @@
 #include "joint_rows.h"
 
+#include "api/joint_stops.h"
+
 // The rows of each joint type, as ODE has them (Smith, ODE manual, "Joint Types and Functions"): velocities are those
 // of body a relative to b; a fraction erp of an error is removed in one step.
 
@@ -154,7 +156,7 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
   if (!stops) return;
   row.softness = soft.stopCfm / dt;
   if (locked) {
-    row.target = soft.stopErp * (axis.lowStop - position) / dt;
+    row.target = engine::stopReturn(step.model.joints[joint].type, axis.lowStop - position, soft.stopErp, dt);
     out.addRow(row);
     return;
   }
@@ -163,7 +165,8 @@ void JointRows::writeAxis(Index joint, int index, Row row, double position, doub
     const double excess = sign * (at - position);  // above 0: beyond the stop
     if (excess < -kReach - 2 * std::abs(rate) * dt) return;
     Row r = row;
-    r.target = sign * (excess > 0 ? soft.stopErp : 1.0) * excess / dt;
+    r.target =
+        sign * (excess > 0 ? engine::stopReturn(step.model.joints[joint].type, excess, soft.stopErp, dt) : excess / dt);
     const double approach = -sign * rate;
     if (soft.bounce > 0 && approach > 0 && excess + approach * dt > 0)
       r.target = sign * std::max(sign * r.target, soft.bounce * approach);

@@ -162,15 +162,17 @@ void TreeBody::addLink(const Model& model, Index index, int& next) {
 // ---- state ----
 
 void TreeBody::take(const Model& model, const State& state) {
-  if (tree_.links.front().joint == kNone) takeRoot(state.bodies[tree_.links.front().body]);
+  const Link& root = tree_.links.front();
+  // A base that does not move is in its place also after a step that gave no numbers.
+  root.joint == kNone ? takeRoot(state.bodies[root.body], places_[0]) : takeRoot(worldState(), {});
   for (Index i = 0; i < tree_.links.size(); ++i)
     if (tree_.links[i].joint != kNone) takeLink(model, state, i);
 }
 
-void TreeBody::takeRoot(const DynamicState& s) {
+void TreeBody::takeRoot(const DynamicState& s, const Place& place) {
   const Eigen::Quaterniond own(s.quaternion[0], s.quaternion[1], s.quaternion[2], s.quaternion[3]);
   body_->setBasePos(toBullet(s.position));
-  body_->setWorldToBaseRot(toBullet((places_[0].turned ? own * places_[0].axes : own).conjugate()));
+  body_->setWorldToBaseRot(toBullet((place.turned ? own * place.axes : own).conjugate()));
   body_->setBaseVel(toBullet(s.linearVelocity));
   body_->setBaseOmega(toBullet(s.angularVelocity));
 }
@@ -251,6 +253,17 @@ void TreeBody::move(State& state, double dt, Scratch& scratch) {
   scratch.velocities.resizeNoInitialize(body_->getNumLinks() + 1);
   body_->compTreeLinkVelocities(&scratch.omegas[0], &scratch.velocities[0]);
   for (Index i = 0; i < tree_.links.size(); ++i) give(state, i, scratch);
+  for (Dof& dof : dofs_) {
+    dof.rate = body_->getJointVel(dof.link);
+    dof.position += dof.rate * dt;
+  }
+}
+
+void TreeBody::clearForces(State& state) const {
+  for (const Link& link : tree_.links) {
+    state.bodies[link.body].force.setZero();
+    state.bodies[link.body].torque.setZero();
+  }
 }
 
 void TreeBody::give(State& state, Index index, Scratch& scratch) const {
@@ -264,8 +277,6 @@ void TreeBody::give(State& state, Index index, Scratch& scratch) const {
   s.position = toVec(scratch.origins[at]);
   s.angularVelocity = axes * toVec(scratch.omegas[at]);
   s.linearVelocity = axes * toVec(scratch.velocities[at]);
-  s.force.setZero();
-  s.torque.setZero();
   s.awake = true;
   ++s.version;
   state.markMoved(tree_.links[index].body);

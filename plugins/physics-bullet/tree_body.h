@@ -29,8 +29,8 @@ struct Dof {
   bool slides = false;   ///< translation, not rotation
   Vec3 direction;        ///< of the axis, in the child, with the sign of the joint's coordinate
   bool atParent = true;  ///< it is the one next to the parent of those of its joint that turn
-  double position = 0;   ///< at the begin of the step, as stops count [rad or m]
-  double rate = 0;       ///< likewise [rad/s or m/s]
+  double position = 0;   ///< as stops count [rad or m]
+  double rate = 0;       ///< rad/s or m/s
 };
 
 class TreeBody {
@@ -43,6 +43,8 @@ class TreeBody {
   void accelerate(const engine::Model& model, const engine::State& state, double dt, Scratch& scratch);
   /// Moves by the present velocities, and writes poses and velocities to the state.
   void move(engine::State& state, double dt, Scratch& scratch);
+  /// Clears the forces on its bodies, which all parts of a step have.
+  void clearForces(engine::State& state) const;
 
   btMultiBody& multiBody() { return *body_; }
   const std::vector<Link>& links() const { return tree_.links; }
@@ -63,7 +65,7 @@ class TreeBody {
   };
   void build(const engine::Model& model);
   void addLink(const engine::Model& model, Index index, int& next);
-  void takeRoot(const engine::DynamicState& s);
+  void takeRoot(const engine::DynamicState& s, const Place& place);
   void takeLink(const engine::Model& model, const engine::State& state, Index index);
   void takeDof(Dof& dof, const engine::Model& model, const engine::State& state, const Link& link);
   void give(engine::State& state, Index index, Scratch& scratch) const;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "api/joint_stops.h"
 #include "api/joint_trees.h"
 #include "ode_world.h"
 
@@ -249,6 +250,26 @@ void assemble(const WorldData& w, const JointData& j, const engine::Joint& from,
   }
 }
 
+/// Lists the axes of a joint whose stops may have to move them back. In exact replay none do: see stopReturn().
+void listLimited(WorldData& w, const engine::Joint& from, const engine::JointSoftness& soft, Index joint) {
+  if (w.exactReplay || from.a == kNone || from.type == JointType::angularMotor) return;
+  for (int axis = 0; axis < engine::axesOf(from.type); ++axis) {
+    const JointAxis& a = from.axes[axis];
+    if ((std::isfinite(a.lowStop) || std::isfinite(a.highStop)) && a.lowStop <= a.highStop)
+      w.limited.push_back({joint, axis, soft.axes[axis].stopErp});
+  }
+}
+
+/// The place of an axis, as its stops count it.
+double placeOf(const engine::Step& step, Index joint, int axis) {
+  const engine::Joint& j = step.model.joints[joint];
+  if (j.type != JointType::slider) return step.state.coordinates[joint].at(static_cast<std::size_t>(axis));
+  static const engine::DynamicState world;
+  const engine::DynamicState &a = step.state.bodies[j.a], &b = j.b == kNone ? world : step.state.bodies[j.b];
+  const Vec3 offset = b.position + b.rotation * j.inB.anchor - a.position;
+  return (j.reversed ? 1 : -1) * (a.rotation * j.inA.axis[0]).dot(offset);
+}
+
 }  // namespace
 
 void compileJoints(WorldData& w, const Model& model, const engine::State& state) {
@@ -284,10 +305,13 @@ void compileJoints(WorldData& w, const Model& model, const engine::State& state)
   }
   w.links.clear();
   w.measured.clear();
+  w.limited.clear();
   for (Index i = 0; i < w.joints.size(); ++i) {
     JointData& j = *w.joints[i];
     const engine::Joint& from = model.joints[i];
-    passParameters(j, from, model.extensions.sceneJoints[i].get<engine::JointSoftness>(), state.coordinates[i]);
+    const auto& soft = model.extensions.sceneJoints[i].get<engine::JointSoftness>();
+    passParameters(j, from, soft, state.coordinates[i]);
+    listLimited(w, from, soft, i);
     if (from.wantsFeedback) w.measured.push_back(i);
     if (from.b != kNone) w.links.push_back({from.a, from.b});
     if (j.setAt == from.setAt || from.a == kNone) continue;
@@ -302,6 +326,17 @@ void passTurns(WorldData& w, const Model& model, const engine::State& state) {
   for (Index i = 0; i < w.joints.size(); ++i)
     for (int axis = 0; axis < engine::axesOf(w.joints[i]->type); ++axis)
       passStops(*w.joints[i], model.joints[i], axis, state.coordinates[i].turns[axis]);
+}
+
+void passStopReturns(WorldData& w, const engine::Step& step) {
+  for (const auto& [joint, axis, stopErp] : w.limited) {
+    JointData& j = *w.joints[joint];
+    const JointAxis& a = step.model.joints[joint].axes[axis];
+    const double place = placeOf(step, joint, axis), excess = std::max(a.lowStop - place, place - a.highStop);
+    // ODE moves the axis back by a fraction of the excess.
+    const double most = excess > 0 ? engine::kStopReturn * step.dt / excess : HUGE_VAL;
+    pass(j, dParamStopERP + dParamGroup * axis, std::min(stopErp, most), j.soft.axes[axis].stopErp);
+  }
 }
 
 void passMotors(WorldData& w, const engine::State& state) {

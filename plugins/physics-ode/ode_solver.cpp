@@ -301,6 +301,7 @@ void OdeSolver::step(engine::Step& step) {
   w.awake = findNeeded(w, step);
   if (w.awake == 0) return;
   passTurns(w, step.model, step.state);
+  passStopReturns(w, step);
   passMotors(w, step.state);
   writeState(w, step);
   passLaws(w, step);

@@ -83,7 +83,13 @@ struct WorldData {
   int maxJointRows = 0;    ///< most rows of joints in a set of bodies that joints connect
   int maxJointBodies = 0;  ///< most bodies in such a set
   bool jointRowsCounted = false;
-  bool turned = false;  ///< ODE has the stops of joints that have turned
+  struct LimitedAxis {
+    engine::Index joint;
+    int axis;
+    double stopErp;  ///< the model's
+  };
+  std::vector<LimitedAxis> limited;  ///< axes with a stop
+  bool turned = false;               ///< ODE has the stops of joints that have turned
 
   std::vector<engine::Index> excluded;    ///< bodies disabled during a run of one of ODE's solvers
   std::vector<engine::Index> visitStack;  ///< of orderOfBodies()
@@ -105,6 +111,8 @@ int rowsOf(engine::JointType type);
 void compileJoints(WorldData& w, const engine::Model& model, const engine::State& state);
 /// Passes the stops of joints that have turned.
 void passTurns(WorldData& w, const engine::Model& model, const engine::State& state);
+/// Passes the ERP of stops that axes are far beyond: they come back at a bounded speed.
+void passStopReturns(WorldData& w, const engine::Step& step);
 /// Passes the motors' speeds and forces, which change in every step.
 void passMotors(WorldData& w, const engine::State& state);
 /// Passes the laws of joints.
