@@ -138,3 +138,24 @@ TEST_CASE("a body that tumbles fast keeps its energy in long steps") {
   w.run(10);
   CHECK(energy() == Approx(before).epsilon(1e-3));
 }
+
+TEST_CASE("light links that whip at the end of a chain gain no energy in long steps") {
+  EngineWorld w(kBullet);
+  w.setGravity(0);
+  w.dt = 0.02;
+  const Mat3 inertia = 1e-6 * Mat3::Identity();
+  std::vector<BodyHandle> links;
+  for (int i = 0; i < 4; ++i) {
+    links.push_back(w.body({0.05 + 0.1 * i, 0, 0}, 0.01, inertia));
+    const JointHandle j =
+        w.joint(JointType::hinge, links.back(), i == 0 ? BodyHandle::none : links[links.size() - 2], {0.1 * i, 0, 0});
+    w.world.setAxis(j, 0, i % 2 == 0 ? Vec3::UnitY() : Vec3::UnitZ());
+  }
+  // The last link turns alone: 8 m/s at its end.
+  w.world.setAngularVelocity(links.back(), {0, 0, 80});
+  w.world.setLinearVelocity(links.back(), {0, 4, 0});
+  for (int i = 0; i < 200; ++i) {
+    w.run(w.dt);
+    for (const BodyHandle b : links) REQUIRE(w.world.state(b).linearVelocity.norm() < 8);
+  }
+}

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
 #include "api/mass.h"
@@ -12,11 +13,17 @@ namespace spark::mjcf {
 namespace {
 constexpr double kLightMass = 0.01, kLightRadius = 0.01;  // kg, m
 constexpr double kWater = 1000;                           // kg/m^3
+constexpr double kLeastMass = 1e-7;                       // kg; engines compute with no less
+// Moments below these are what rounding leaves, or too small for engines.
+constexpr double kLeastRatio = 1e-9;    // of the largest moment
+constexpr double kLeastRadius = 1e-5;   // m, of gyration
+constexpr double kLeastMoment = 1e-14;  // kg m^2
 }  // namespace
 
 void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported) {
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
-  if (!(moments.x() > 0)) {
+  const double least = std::max({kLeastMoment, kLeastRatio * moments.z(), kLeastRadius * kLeastRadius * mass.mass});
+  if (!(moments.x() > least)) {
     unsupported.add(from, what + " with moments of inertia that are not above 0 gets those of a sphere of water");
     mass.inertia = physics::sphereMass(mass.mass, std::cbrt(0.75 * mass.mass / (kWater * M_PI))).inertia;
   } else if (moments.x() + moments.y() < moments.z() * (1 - 1e-9)) {
@@ -37,8 +44,9 @@ void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupp
   }
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     Body& b = model.bodies[i];
-    if (carrier[i] != i || masses[i] > 0 || (flawedOnly && !flawed[i])) continue;
-    unsupported.add(b.from, fmt::format("{} that moves and has no mass gets {} g", what, 1000 * kLightMass));
+    if (carrier[i] != i || masses[i] > (flawedOnly ? 0 : kLeastMass) || (flawedOnly && !flawed[i])) continue;
+    unsupported.add(b.from, fmt::format("{} that moves and has {} mass gets {} g", what,
+                                        masses[i] > 0 ? "next to no" : "no", 1000 * kLightMass));
     b.mass = physics::sphereMass(kLightMass, kLightRadius);
   }
 }

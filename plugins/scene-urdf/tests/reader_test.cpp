@@ -133,6 +133,28 @@ TEST_CASE("What a file leaves out or gets wrong is mended, and said") {
   CHECK(r.actuators().back() == "left_joint_tau");
 }
 
+TEST_CASE("Masses and moments of inertia that are next to nothing are mended, and said") {
+  const auto inertial = [](const std::string& mass, const std::string& moments) {
+    return robot("<link name='w'/><link name='a'><inertial><mass value='" + mass + "'/><inertia " + moments +
+                 "/></inertial></link><joint name='j' type='continuous'><parent link='w'/><child link='a'/></joint>");
+  };
+  const double ofWater = 0.4 * std::cbrt(std::pow(0.75 / (1000 * M_PI), 2));  // of a sphere of 1 kg [kg m^2]
+  // A plate of one direction, a product that leaves no moment about one axis, and a point.
+  for (const char* moments : {"ixx='1e-13' iyy='1e-3' izz='1e-3'", "ixx='1' iyy='1' izz='1' ixy='1'",
+                              "ixx='1e-11' iyy='1e-11' izz='1e-11'"}) {
+    INFO(moments);
+    const Read r(inertial("1", moments));
+    CHECK(r.body("a").mass.inertia.isApprox(ofWater * Mat3::Identity(), 1e-9));
+    CHECK_THAT(r.messages(), Contains("moments of inertia that are not above 0 gets those of a sphere of water"));
+  }
+  const Read light(inertial("1e-9", "ixx='1e-12' iyy='1e-12' izz='1e-12'"));
+  CHECK(light.body("a").mass.mass == Approx(0.01));
+  CHECK_THAT(light.messages(), Contains("a <link> that moves and has next to no mass gets 10 g"));
+  const Read small(inertial("1e-6", "ixx='1e-12' iyy='1e-12' izz='1e-12'"));
+  CHECK(small.body("a").mass.inertia.isApprox(1e-12 * Mat3::Identity()));
+  CHECK(small.messages().empty());
+}
+
 TEST_CASE("Planar and floating joints") {
   const std::string links = "<link name='world'/><link name='a'>" + kMass + "</link>";
   const std::string ends = "<parent link='world'/><child link='a'/><axis xyz='0 0 2'/></joint>";
