@@ -55,6 +55,8 @@ void Collider::describe(Description<Collider>& d) {
   d.property("part", &Collider::part, &Collider::setPart)
       .min(0)
       .doc("Which of its body's parts it belongs to (addPart), from 0.");
+  d.property("priority", &Collider::priority_)
+      .doc("Of two colliders that touch the surface of that with the higher one counts alone.");
   d.implements<engine::IExtended>();
   d.abstract();
 }

@@ -41,6 +41,8 @@ class Collider : public PhysicsObject,
 
   /// As of the last refreshHandlers().
   const Handlers& handlers() const { return handlers_; }
+  /// Of two colliders that touch the surface of that with the higher one counts alone.
+  int priority() const { return priority_; }
   /// As of the last refreshHandlers(): contacts can be solid. Cached, because the pair filter runs for each close pair.
   bool solid() const { return solid_; }
   /// As of the last refreshHandlers(): it has active handlers.
@@ -115,7 +117,7 @@ class Collider : public PhysicsObject,
   Ref<RigidBody> body_;
   const CollisionGroup* group_ = nullptr;
   Collider* outer_ = nullptr;  ///< the TransformCollider it is part of
-  int part_ = 0;
+  int part_ = 0, priority_ = 0;
   engine::Blocks blocks_;
   Pose local_;                                             ///< in the frame of body, transform or outer collider
   std::int64_t contactTypes_ = 1, contactAffinities_ = 1;  ///< bits

@@ -53,7 +53,10 @@ void decide(std::span<engine::Contact> pair) {
   const Collider& b = *static_cast<const Collider*>(pair.front().ownerB);
   if (!a.solid() || !b.solid() || (!a.hasBody() && !b.hasBody())) return;
   // All points of a solid pair share one surface.
-  const engine::Surface surface = combine(*surfaceOf(a.handlers()), *surfaceOf(b.handlers()));
+  const engine::Surface &ofA = *surfaceOf(a.handlers()), &ofB = *surfaceOf(b.handlers());
+  const engine::Surface surface = a.priority() == b.priority()  ? combine(ofA, ofB)
+                                  : a.priority() > b.priority() ? ofA
+                                                                : ofB;
   for (engine::Contact& c : pair) {
     c.solve = true;
     c.surface = surface;

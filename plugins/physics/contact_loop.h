@@ -13,7 +13,7 @@
 namespace spark::physics {
 
 /// The surface of a contact of `a` with `b` (scene-language section 3.3): mu is the mean of both; every other parameter
-/// is taken from the surface that has it switched on, and is the mean where both have.
+/// is taken from the surface that has it switched on, and is the mean where both have. For colliders of one priority.
 engine::Surface combine(const engine::Surface& a, const engine::Surface& b);
 
 /// The pair filter of the engine; owners are Colliders. False for pairs whose collisions are excluded, and for pairs

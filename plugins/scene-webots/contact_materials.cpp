@@ -44,52 +44,40 @@ void ContactMaterials::read(const Node& node, mjcf::Unsupported& unsupported) {
   pairs_.push_back(std::move(p));
 }
 
-std::optional<double> ContactMaterials::known(const std::string& material) const {
-  const auto found = own_.find(material);
-  return found == own_.end() ? std::nullopt : std::optional(found->second);
-}
-
-/// Gives each material of a pair whose other one is known what is missing to the mean.
-void ContactMaterials::spread() {
-  for (bool isNew = true; std::exchange(isNew, false);)
-    for (const Pair& p : pairs_)
-      for (const std::string* const material : {&p.first, &p.second}) {
-        const auto other = known(p.other(*material));
-        if (!other || known(*material)) continue;
-        own_.emplace(*material, std::max(0.0, 2 * p.friction - *other));
-        isNew = true;
-      }
-}
-
 void ContactMaterials::solve(mjcf::Unsupported& unsupported) {
-  own_.emplace(kOrdinary, 1);
+  own_[kOrdinary] = 1;
   for (const Pair& p : pairs_)
-    if (p.first == kOrdinary && p.second == kOrdinary) own_[kOrdinary] = p.friction;
-  spread();
-  // Materials that are listed among themselves alone.
+    if (p.has(kOrdinary)) own_[p.other(kOrdinary)] = p.friction;
+  // Of others each has what its partner lacks of the mean.
+  for (const Pair& p : pairs_) {
+    const auto first = own_.find(p.first), second = own_.find(p.second), none = own_.end();
+    if (first == none && second == none)
+      own_[p.first] = own_[p.second] = p.friction;
+    else if (first == none)
+      own_[p.first] = std::max(0.0, 2 * p.friction - second->second);
+    else if (second == none)
+      own_[p.second] = std::max(0.0, 2 * p.friction - first->second);
+  }
   for (const Pair& p : pairs_)
-    if (!known(p.first)) {
-      own_.emplace(p.first, p.first == p.second ? p.friction : std::max(0.0, 2 - own_[kOrdinary]));
-      spread();
-    }
-  for (const Pair& p : pairs_)
-    if (const double mean = (own_[p.first] + own_[p.second]) / 2; std::abs(mean - p.friction) > 1e-9)
-      unsupported.add(
-          p.from->element(),
-          fmt::format("the friction of \"{}\" on \"{}\" is {:g}, not {:g}: surfaces that touch have the mean "
-                      "of theirs",
-                      p.first, p.second, mean, p.friction));
+    if (const double is = between(p); std::abs(is - p.friction) > 1e-9)
+      unsupported.add(p.from->element(),
+                      fmt::format("the friction of \"{}\" on \"{}\" is {:g}, not {:g}: two surfaces have the mean of "
+                                  "theirs",
+                                  p.first, p.second, is, p.friction));
 }
 
-Roughness ContactMaterials::of(const std::string& material) const {
-  const double ordinary = known(kOrdinary).value_or(1);
-  // A material that is not listed has a friction of 1 on "default".
-  const double own = known(material).value_or(std::max(0.0, 2 - ordinary));
-  Roughness out{own, (own + ordinary) / 2, own == ordinary};
-  for (const Pair& p : pairs_)
-    if (p.has(material) && p.other(material) == kOrdinary)
-      out.beside = p.friction, out.isOrdinary = material == kOrdinary;
-  return out;
+double ContactMaterials::between(const Pair& p) const {
+  if (p.has(kOrdinary)) return friction(p.other(kOrdinary));
+  return (friction(p.first) + friction(p.second)) / 2;
+}
+
+double ContactMaterials::friction(const std::string& material) const {
+  const auto found = own_.find(material);
+  return found == own_.end() ? 1 : found->second;
+}
+
+bool ContactMaterials::rules(const std::string& material) const {
+  return material != kOrdinary && (own_.contains(material) || friction(kOrdinary) != 1);
 }
 
 }  // namespace spark::webots

@@ -114,11 +114,10 @@ std::size_t ModelReader::addSolid(const Node& solid, const Frame& around, const 
   if (solid.type != "Solid" && !isRobot(solid.type)) addDevice(solid, inside);
   if (solid.type == "DifferentialWheels" || solid.type == "Supervisor")
     r_.ignore(solid, fmt::format("a {} is read as a Robot: its wheels have no motors", solid.type));
-  const Roughness roughness = r_.materials.of(f.text("contactMaterial", "default"));
+  const std::string material = f.text("contactMaterial", "default");
   for (mjcf::Geom& g : body.geoms) {
-    g.contact.friction[0] = roughness.beside;
-    g.contact.priority = roughness.isOrdinary ? 0 : 1;
-    g.meanFriction = roughness.own;
+    g.contact.friction[0] = r_.materials.friction(material);
+    g.contact.priority = r_.materials.rules(material) ? 1 : 0;
   }
   if (f.has("immersionProperties")) r_.ignore(solid, "immersionProperties are not supported");
   for (const char* const velocity : {"linearVelocity", "angularVelocity"})

@@ -10,8 +10,8 @@
 namespace spark {
 
 /// Base of sensors that measure distances with rays. Rays start at the sensor's transform and look along its y axis, as
-/// heads do. They meet everything that collides, except what moves of the sensor's own agent, and static colliders of it
-/// that the sensor is in.
+/// heads do. They meet everything that collides, except what moves of the sensor's own agent, and its static colliders
+/// that contain the sensor.
 class RayPerceptor : public Perceptor, public ISharedView, public IMeasurement {
   SPARK_CLASS(RayPerceptor, Perceptor)
  public:

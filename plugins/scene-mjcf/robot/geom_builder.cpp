@@ -86,9 +86,10 @@ void setContact(Node& collider, const Geom& g) {
   setProperty(collider, "contactTypes", g.contactTypes);
   setProperty(collider, "contactAffinities", g.contactAffinities);
   // For the other engines.
+  if (m.priority != 0) setProperty(collider, "priority", m.priority);
   Leaf& surface = collider.create("ContactJointHandler", "surface");
   setProperty(surface, "contactBounceMode", false);
-  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : g.meanFriction.value_or(m.friction[0]));
+  setProperty(surface, "contactMu", m.condim == 1 ? 0.0 : m.friction[0]);
   setProperty(surface, "contactPyramid", true);
 }
 

@@ -43,7 +43,6 @@ struct Geom {
   engine::ShapeDescription shape;
   Pose pose;  ///< in its body
   ContactNumbers contact;
-  std::optional<double> meanFriction{};  ///< where engines take the mean of two surfaces; nullopt: contact.friction
   int contactTypes = 1, contactAffinities = 1;
   bool isShape = true;            ///< false: only its mass counts
   Vec3 ellipsoid = Vec3::Zero();  ///< half axes of an ellipsoid, whose shape is a convex one [m]; 0: it is none

@@ -316,18 +316,35 @@ WorldInfo { contactProperties [ ContactProperties { material1 "rubber" coulombFr
   ContactProperties { material1 "default" material2 "ice" coulombFriction 0.5 }
   ContactProperties { material1 "steel" coulombFriction 0.1 }
   ContactProperties { material2 "steel" coulombFriction 0.1 } ] })"));
-  const auto friction = [&](const char* name) { return *r.body(name).geoms[0].meanFriction; };
-  CHECK(friction("floor") == 1);
-  CHECK(friction("shoe") == 5);  // a mean of 3
-  CHECK(friction("skate") == 0);
-  CHECK(friction("toy") == 1);
-  // MuJoCo takes the larger of two, unless one has priority.
-  CHECK(r.body("floor").geoms[0].contact.priority == 0);
-  CHECK(r.body("shoe").geoms[0].contact.priority == 1);
-  CHECK(r.body("shoe").geoms[0].contact.friction[0] == 3);
-  CHECK(r.body("skate").geoms[0].contact.friction[0] == 0.1);
-  CHECK_THAT(r.messages(), Contains("a.wbt:8:3: the friction of \"steel\" on \"default\" is 0.5, not 0.1: surfaces") &&
+  const auto contact = [&](const char* name) { return r.body(name).geoms[0].contact; };
+  CHECK(contact("floor").friction[0] == 1);
+  CHECK(contact("shoe").friction[0] == 3);
+  CHECK(contact("skate").friction[0] == 0.1);
+  CHECK(contact("toy").friction[0] == 1);
+  // Beside the floor the other surface counts alone.
+  CHECK(contact("floor").priority == 0);
+  CHECK(contact("shoe").priority == 1);
+  CHECK(contact("skate").priority == 1);
+  CHECK(contact("toy").priority == 0);
+  CHECK_THAT(r.messages(), Contains("a.wbt:6:3: the friction of \"ice\" on \"steel\" is 0.3, not 0.25: two surfaces") &&
                                Contains("a.wbt:9:3: a second ContactProperties for two materials is ignored"));
+}
+
+TEST_CASE("Materials that are not beside the default have the mean of their pairs") {
+  const Read r(
+      world(R"(WorldInfo { contactProperties [ ContactProperties { material1 "a" material2 "b" coulombFriction 2 }
+  ContactProperties { material1 "b" material2 "c" coulombFriction 3 } ContactProperties { coulombFriction 0.5 } ] }
+Solid { name "a" contactMaterial "a" boundingObject Sphere { } } Solid { name "b" contactMaterial "b" boundingObject Sphere { } }
+Solid { name "c" contactMaterial "c" boundingObject Sphere { } } Solid { name "d" contactMaterial "d" boundingObject Sphere { } }
+Solid { name "e" boundingObject Sphere { } })"));
+  CHECK_THAT(r.messages(), !Contains("friction"));
+  const auto contact = [&](const char* name) { return r.body(name).geoms[0].contact; };
+  CHECK(contact("a").friction[0] == 2);
+  CHECK(contact("b").friction[0] == 2);
+  CHECK(contact("c").friction[0] == 4);
+  CHECK(contact("d").friction[0] == 1);
+  CHECK(contact("d").priority == 1);
+  CHECK(contact("e").friction[0] == 0.5);
 }
 
 TEST_CASE("Friction that makes no sense is 1, and named") {
