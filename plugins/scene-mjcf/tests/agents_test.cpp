@@ -76,12 +76,11 @@ TEST_CASE("sensors and actuators that are not supported are logged with their po
                                  "framexaxis objtype='body' objname='b'",
                                  "framepos objtype='camera' objname='c'",
                                  "framepos objtype='geom' objname='g' reftype='body' refname='b'",
-                                 "gyro site='fixed'",
                                  "user dim='1' objtype='body' objname='b'",
                                  "framequat objtype='geom' objname='seen'"};
   std::string text =
       R"(<mujoco model='m'><asset><mesh name='none' file='none.stl'/></asset><worldbody><camera name='c'/>
-    <site name='fixed'/><body name='b'><joint name='j'/><geom name='g' size='.1'/><site name='s'/>
+    <body name='b'><joint name='j'/><geom name='g' size='.1'/><site name='s'/>
     <geom name='seen' type='mesh' mesh='none' contype='0' conaffinity='0' density='0'/>
     <body name='d'><joint name='ball' type='ball'/><geom size='.1'/></body></body>
     <body name='f' pos='3 0 0'><freejoint name='free'/><geom size='.1'/></body></worldbody>
