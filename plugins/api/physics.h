@@ -310,9 +310,9 @@ class IPhysicsServer {
   /// measureForces sets it for every solved contact. Valid until the next step or change of the tree; empty after such
   /// a change.
   virtual std::span<const engine::Contact> contacts() const = 0;
-  /// The first collider on the way from `from` along `direction` (any length above 0), at most `length` far [m];
-  /// nothing below `except` counts. A collider that contains the origin is met where the ray leaves it. Throws Error
-  /// when there is no world. Several threads may call it at once in the sense phase; the same holds for overlaps().
+  /// The first collider on the way from `from` along `direction` (any length above 0), at most `length` far [m]; below
+  /// `except` only what is static and does not contain `from`. A collider around it is met where the ray leaves. Throws
+  /// Error when there is no world. Several threads may call it at once in the sense phase; so for overlaps().
   virtual std::optional<RayHit> castRay(const Vec3& from, const Vec3& direction, double length,
                                         const Node* except = nullptr) = 0;
   /// True if a collider is between two points [m]. Those that contain `to` (within 1 mm), those that move with `own`

@@ -35,7 +35,7 @@ class IHearing {
   /// Appends the colliders that are heard in a cone, each once. The distance is exact, however thin a collider is: to
   /// the nearest point of its surface in the cone; 0 where it contains the apex. A collider whose nearest point is
   /// hidden by another one is looked for with `rings` rings of rays in the cone (ring k has 6 k rays), and with rays to
-  /// points spread over it. Nothing below `except` counts. Several threads may call it at once in the sense phase.
+  /// points spread over it. `except` as of castRay(). Several threads may call it at once in the sense phase.
   virtual void listen(const SoundCone& cone, int rings, const Node* except, std::vector<Echo>& out) = 0;
 };
 
