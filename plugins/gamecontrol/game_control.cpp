@@ -97,6 +97,7 @@ void GameControl::describe(Description<GameControl>& d) {
       .doc("Messages with percepts that were not sent because the client had not read earlier ones.");
   d.implements<IGameControl>();
   d.implements<IRemarks>();
+  d.implements<ISuccession>();
   d.implements<IConnectionConsumer>();
   d.implements<IInputGate>();
   d.on<&GameControl::act>(phase::kAct);
@@ -188,6 +189,22 @@ void GameControl::disqualify(AgentAspect& agent, std::string_view why) {
   }
 }
 
+ISuccession::Claim GameControl::claim(AgentAspect& holder, bool again) {
+  for (const auto& p : participants_) {
+    if (p->aspect() != &holder) continue;
+    if (p->leaving()) return Claim::granted;
+    IConnection* const connection = p->connection();
+    if (!connection || !p->claim(again)) return Claim::refused;
+    const bool hangs = p->hangs(now());
+    if (!(tape_ ? tape_->decide("hangs", static_cast<std::uint64_t>(p->number()), hangs, false) : hangs))
+      return Claim::waiting;
+    connection->close(fmt::format("{} neither reads nor answers, and gives way to its successor", p->label()));
+    p->leave();
+    return Claim::granted;
+  }
+  return Claim::refused;
+}
+
 std::string GameControl::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   gamecontrol::JudgeList judges;
   judges.update(judges_);
@@ -204,7 +221,8 @@ bool GameControl::ready(bool lockstep) {
   if (holding())
     return hold_.isOver(newcomers_, {expect_, holdWait_, joinWait_, holdReport_, joinPolicy_.get(), last},
                         kernel().log());
-  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_}, {at, last}, agentLog());
+  return lockstep_.isOpen(participants_, newcomers_, {syncTimeout_, answerWait_, joinPace_, joinPolicy_.get()},
+                          {at, last}, agentLog());
 }
 
 void GameControl::closeWithoutRobot() {

@@ -10,6 +10,7 @@
 
 #include "api/agents.h"
 #include "api/match.h"
+#include "api/succession.h"
 #include "gamecontrol/hold.h"
 #include "gamecontrol/lockstep_gate.h"
 #include "gamecontrol/participant.h"
@@ -19,7 +20,12 @@ namespace spark {
 
 /// At /sys/server/gamecontrol. Its children are a parser, control aspects and perhaps a join policy. Simulation thread
 /// only; in the sense phase it distributes agents over the kernel's threads.
-class GameControl : public Node, public IGameControl, public IRemarks, public IConnectionConsumer, public IInputGate {
+class GameControl : public Node,
+                    public IGameControl,
+                    public IRemarks,
+                    public ISuccession,
+                    public IConnectionConsumer,
+                    public IInputGate {
   SPARK_CLASS(GameControl, Node)
  public:
   static void describe(Description<GameControl>& d);
@@ -35,6 +41,8 @@ class GameControl : public Node, public IGameControl, public IRemarks, public IC
   void withdrawAgents() override;
   void restoreAgent(Node& parent, const std::string& name, int number) override;
   bool remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) override;
+
+  Claim claim(AgentAspect& holder, bool again) override;
 
   void connected(IConnection& connection) override;
   void received(IConnection& connection, std::string_view message) override;

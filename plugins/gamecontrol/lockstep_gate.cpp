@@ -6,12 +6,16 @@
 #include <cmath>
 #include <utility>
 
+#include "gamecontrol/vacancies.h"
+
 namespace spark::gamecontrol {
 
 namespace {
 /// The first kPacedMessages messages to an agent that has not sent (syn) yet are paced by joinPace, even if others
 /// wait.
 constexpr std::int64_t kPacedMessages = 50;
+/// An agent whose name another one claims is closed after this multiple of answerWait.
+constexpr double kPatienceWithClaims = 5;
 /// An agent that delays a cycle for longer is slow [s].
 constexpr double kSlow = 1;
 
@@ -39,7 +43,7 @@ bool LockstepGate::isOpen(const List& participants, const List& newcomers, const
       std::count_if(participants.begin(), participants.end(), [](const auto& p) { return p->lapsed(); });
   bool untrusted = false;
   for (const auto& p : participants) {
-    if (hasAnswered(*p, limits, look.last, anyJoins, static_cast<int>(lapsed), log)) continue;
+    if (hasAnswered(*p, participants, limits, look.last, anyJoins, static_cast<int>(lapsed), log)) continue;
     if (!isUntrusted(*p, limits, look.last)) return false;
     untrusted = true;
   }
@@ -49,8 +53,8 @@ bool LockstepGate::isOpen(const List& participants, const List& newcomers, const
 
 /// True if the gate need not wait for `p` now. One program may control many agents and read from each in turn: while
 /// any agent is about to get its first percepts, the wait for the others is limited by answerWait.
-bool LockstepGate::hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins, int lapsed,
-                               AgentLog& log) const {
+bool LockstepGate::hasAnswered(Participant& p, const List& participants, const Limits& limits, Clock::time_point last,
+                               bool anyJoins, int lapsed, AgentLog& log) const {
   if (p.leaving() || !p.mustAnswer() || p.answered()) return true;
   const double waits = waited(last);
   if (!p.pledged()) {
@@ -60,6 +64,12 @@ bool LockstepGate::hasAnswered(Participant& p, const Limits& limits, Clock::time
                           "sync message, (syn) for most robots.",
                           p.label(), waits));
     p.giveUp();
+    return true;
+  }
+  if (waits >= kPatienceWithClaims * limits.answerWait && isClaimed(participants, p, limits.policy)) {
+    p.connection()->close(
+        fmt::format("{} did not answer for {:.3g} s, and gives way to its successor", p.label(), waits));
+    p.leave();
     return true;
   }
   if (anyJoins && !p.expected() && waits >= limits.answerWait) return true;

@@ -12,6 +12,9 @@
 /// Some clients answer with several messages: (init ...), (syn), (syn). Until its first cycle with a sync predicate is
 /// over an agent has answered when it has been silent for joinPace.
 ///
+/// An agent that has not answered for five times answerWait is closed if another client claims its name: that one is
+/// its successor, and the match does not wait for syncTimeout.
+///
 /// A time-out counts until the last look only: what a client sent until then has been received. So no client pays for
 /// the time in which the host itself did not run.
 ///
@@ -32,9 +35,10 @@ class LockstepGate {
   using List = std::vector<std::unique_ptr<Participant>>;
   /// Times are wall time in seconds; see the properties of GameControl.
   struct Limits {
-    double syncTimeout;  ///< an agent that does not answer for this time is disconnected; 0: never
-    double answerWait;   ///< while an agent joins: maximum wait for the others in a cycle
-    double joinPace;     ///< minimum duration of a cycle for agents that have not sent a sync predicate yet
+    double syncTimeout;             ///< an agent that does not answer for this time is disconnected; 0: never
+    double answerWait;              ///< while an agent joins: maximum wait for the others in a cycle
+    double joinPace;                ///< minimum duration of a cycle for agents that have not sent a sync predicate yet
+    IJoinPolicy* policy = nullptr;  ///< the game's
   };
   /// Two readings of the clock.
   struct Look {
@@ -52,8 +56,8 @@ class LockstepGate {
 
  private:
   double waited(Clock::time_point last) const;
-  bool hasAnswered(Participant& p, const Limits& limits, Clock::time_point last, bool anyJoins, int lapsed,
-                   AgentLog& log) const;
+  bool hasAnswered(Participant& p, const List& participants, const Limits& limits, Clock::time_point last,
+                   bool anyJoins, int lapsed, AgentLog& log) const;
   double patience(const Participant& p, const Limits& limits, bool anyJoins, int lapsed) const;
   bool isUntrusted(const Participant& p, const Limits& limits, Clock::time_point last) const;
   bool mustPace(const List& participants, const Limits& limits, Clock::time_point last) const;

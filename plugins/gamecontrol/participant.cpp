@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "gamecontrol/scene_effector.h"
@@ -110,6 +111,8 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
                                  Clock::time_point now) {
   heardFrom_ = true;
   lastHeard_ = now;
+  claimed_ = false;
+  unanswered_ = 0;
   latency_.onMessage(lastHeard_);
   if (!actions_.reserve(message.size(), maxPending))
     return fmt::format("it sent more than {} bytes within one cycle, or more than {} words are under way", maxPending,
@@ -264,6 +267,7 @@ bool Participant::deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_po
     return true;
   }
   encode();
+  unanswered_ = std::min(unanswered_ + 1, kHanging);
   bool sent = connection_->send(message_);
   if (tape) sent = tape->decide("sent", static_cast<std::uint64_t>(number_), sent, true);
   if (!sent) return false;
@@ -285,6 +289,19 @@ void Participant::think(AgentLog& log, std::int64_t cycle) {
   }
   if (actions.isUnbalanced() && actions.balance() != 0)
     warn(log, cycle, "its actions did not close each list that they opened, once.");
+}
+
+// ---- succession ----
+
+bool Participant::claim(bool again) {
+  if (again && !claimed_) return false;
+  claimed_ = true;
+  return true;
+}
+
+/// Messages alone do not tell: without lockstep, and as fast as possible, many are sent before a client can answer one.
+bool Participant::hangs(Clock::time_point now) const {
+  return unanswered_ >= kHanging && std::chrono::duration<double>(now - lastHeard_).count() > kHangingFor;
 }
 
 // ---- hold and state ----
@@ -321,6 +338,7 @@ void Participant::save(StateWriter& out) const {
     own.write(given_.effectors);
     own.write(given_.perceptors);
     own.write(sent_);
+    own.write(claimed_);
     lockstep_.save(own);
     if (!inside_) actions_.save(own);
     actions_.saveHold(own);
@@ -355,6 +373,7 @@ std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node
   out->given_.effectors = static_cast<std::size_t>(own.readInteger());
   out->given_.perceptors = static_cast<std::size_t>(own.readInteger());
   out->sent_ = own.readInteger();
+  out->claimed_ = own.readBool();
   out->lockstep_.load(own);
   if (!inside) out->actions_.load(own);
   out->actions_.loadHold(own);

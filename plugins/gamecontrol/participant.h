@@ -170,6 +170,16 @@ class Participant {
   /// Wall time from percepts to the answer [s], smoothed; NaN if unknown.
   double latency() const { return latency_.seconds(); }
 
+  // ---- succession, see ISuccession ----
+
+  /// Another client claims what this one has; `again`: it did so in the last cycle. False: this one has sent something
+  /// since the first time.
+  bool claim(bool again);
+  /// It was claimed, and has sent nothing since.
+  bool claimed() const { return claimed_; }
+  /// True if it hangs: it has answered none of the last kHanging messages, nor for kHangingFor seconds of wall time.
+  bool hangs(Clock::time_point now) const;
+
   // ---- lockstep ----
 
   /// Lockstep waits for it: it can answer percepts with a sync predicate, was sent some, and has sent that predicate
@@ -267,6 +277,10 @@ class Participant {
   LatencyMeter latency_;
   Clock::time_point joinedAt_, lastHeard_;
   Held held_;
+  static constexpr int kHanging = 250;
+  static constexpr double kHangingFor = 5;
+  bool claimed_ = false;
+  int unanswered_ = 0;                ///< messages to it since its last one, at most kHanging
   static constexpr int kLines = 100;  ///< about one agent, in LineBudget::kWindow
   LineBudget lines_{kLines};
   Mistakes mistakes_;

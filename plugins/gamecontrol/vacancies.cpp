@@ -19,17 +19,26 @@ IAgentIdentity* identityOf(const Participant& p) {
   return p.aspect() ? static_cast<IAgentIdentity*>(Below<IAgentIdentity>().find(*p.aspect())) : nullptr;
 }
 
+bool hasName(const Participant& p, const IJoinPolicy::Name& name) {
+  const IAgentIdentity* const identity = identityOf(p);
+  return identity && identity->number() == name.number && identity->team() == name.team;
+}
+
+/// Calls `f(name)` for each name in the actions until it returns true; true if it did.
+template <class F>
+bool anyName(const Predicates& actions, const IJoinPolicy& policy, F f) {
+  for (const Element e : actions)
+    if (e.head() == policy.predicate() && f(policy.read(e))) return true;
+  return false;
+}
+
 Participant* vacantNamedIn(const Predicates& actions, const Participants& participants, IJoinPolicy& policy) {
-  for (const Element e : actions) {
-    if (e.head() != policy.predicate()) continue;
-    const IJoinPolicy::Name name = policy.read(e);
-    Participant* const found = firstVacant(participants, [&name](const Participant& p) {
-      const IAgentIdentity* const identity = identityOf(p);
-      return identity && identity->number() == name.number && identity->team() == name.team;
-    });
-    if (found) return found;
-  }
-  return nullptr;
+  Participant* found = nullptr;
+  anyName(actions, policy, [&](const IJoinPolicy::Name& name) {
+    found = firstVacant(participants, [&name](const Participant& p) { return hasName(p, name); });
+    return found != nullptr;
+  });
+  return found;
 }
 }  // namespace
 
@@ -53,6 +62,16 @@ Participant* vacantFor(const Participants& participants, const Participant& clie
   if (connection->port().as<IReturningAgents>()) return vacantAt(participants, *connection);
   if (policy) return vacantNamed(participants, client, *policy);
   return firstVacant(participants, [](const Participant& p) { return !p.returns(); });
+}
+
+bool isClaimed(const Participants& participants, const Participant& holder, IJoinPolicy* policy) {
+  if (holder.claimed()) return true;
+  if (!policy) return false;
+  const auto isHolder = [&holder](const IJoinPolicy::Name& name) { return hasName(holder, name); };
+  return std::any_of(participants.begin(), participants.end(), [&](const auto& p) {
+    return p.get() != &holder && p->connection() && !p->leaving() &&
+           (anyName(p->pending(), *policy, isHolder) || anyName(p->deferred(), *policy, isHolder));
+  });
 }
 
 std::string reportOfVacant(const Participants& participants) {

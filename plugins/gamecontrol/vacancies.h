@@ -22,6 +22,9 @@ Participant* vacantNamed(const Participants& participants, const Participant& cl
 /// another client as the player that it names; where players have no names (`policy` is nullptr), as the first one that
 /// does not wait for an agent of its own. nullptr: none.
 Participant* vacantFor(const Participants& participants, const Participant& client, IJoinPolicy* policy);
+/// True if another client claims to be the player that `holder` is: it was told that this one is there, and waits, or
+/// it names that player in its actions.
+bool isClaimed(const Participants& participants, const Participant& holder, IJoinPolicy* policy);
 /// Which robots wait for their clients, and what to do, for the log.
 std::string reportOfVacant(const Participants& participants);
 /// Robots without a name leave: their clients cannot find them, and come as new ones.

@@ -14,6 +14,15 @@
 
 namespace spark {
 
+namespace soccer {
+/// What an agent asks for by its init action.
+struct Application {
+  std::string team;
+  std::int64_t unum = 0;  ///< 0: the lowest free number
+  bool waiting = false;   ///< a player that may hang has the number: applied for again in each cycle
+};
+}  // namespace soccer
+
 /// The state of a player in the match: team, number, battery, direction of view, messages it heard. A scene node named
 /// AgentState below the robot's agent aspect. It is a visible object: agents see it as `P`.
 class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget {
@@ -69,6 +78,9 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
   }
   /// True once after an assign() with `announce`.
   bool takeAnnouncement() { return std::exchange(announce_, false); }
+
+  /// Its last application.
+  soccer::Application& application() { return application_; }
 
   /// Energy left [%], 0 to 100.
   double battery() const { return battery_; }
@@ -126,6 +138,7 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
     out.write(announce_);
     out.write(selected_);
     out.write(movedAt_);
+    out.aside(application_.waiting ? fmt::format("{} {}", application_.unum, application_.team) : std::string());
     for (int c : capacity_) out.write(c);
     for (const Message* m : {&own_, &heard_[kMate], &heard_[kOpponent]}) {
       out.write(m->pending);
@@ -141,6 +154,10 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
     announce_ = in.readBool();
     selected_ = in.readBool();
     movedAt_ = in.readNumber();
+    const std::string waiting = in.readString();
+    const std::size_t blank = waiting.find(' ');
+    application_ = {};
+    if (blank != waiting.npos) application_ = {waiting.substr(blank + 1), std::stoll(waiting), true};
     for (int& c : capacity_) c = static_cast<int>(in.readInteger());
     for (Message* m : {&own_, &heard_[kMate], &heard_[kOpponent]}) {
       m->pending = in.readBool();
@@ -167,6 +184,7 @@ class AgentState : public ObjectState, public IAgentIdentity, public IEchoTarget
   soccer::Side side_ = soccer::Side::none;
   int unum_ = 0, robotType_ = 0;
   std::string team_;
+  soccer::Application application_;
   bool announce_ = false, selected_ = false;
   double movedAt_ = kNeverMoved;
   double battery_ = kFullBattery, temperature_ = 20, pan_ = 0, tilt_ = 0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/succession.h"
 #include "init_action.h"
 #include "team_material.h"
 
@@ -69,6 +70,7 @@ bool GameStateAspect::mayLogJoin() {
 void GameStateAspect::report(std::vector<StatusEntry>& out) const {
   out.push_back({"playMode", modeText(), {}});
   out.push_back({"score", List{teams_[0].score, teams_[1].score}, {"Left", "Right"}});
+  out.push_back({"teams", List{teams_[0].name, teams_[1].name}, {"Left", "Right"}});
 }
 
 std::string_view GameStateAspect::predicate() const { return soccer::kInit; }
@@ -154,8 +156,32 @@ static bool isPlainWord(std::string_view name) {
   });
 }
 
-std::string GameStateAspect::join(AgentState& state, const std::string& name, std::int64_t unum) {
+Side GameStateAspect::sideFor(const std::string& name) const {
+  for (Side s : {Side::left, Side::right})
+    if (team(s).name == name) return s;
+  for (Side s : {Side::left, Side::right})
+    if (team(s).name.empty()) return s;
+  for (Side s : {Side::left, Side::right})
+    if (team(s).hasLeft()) return s;
+  return Side::none;
+}
+
+bool GameStateAspect::vacate(Side side, soccer::Application& application, bool again) {
+  const soccer::Player* holder = pitch_.player(side, static_cast<int>(application.unum));
+  auto* succession = kernel().root().find<ISuccession>(IGameControl::kPath);
+  if (!holder || !succession) return false;
+  const auto outcome = succession->claim(*holder->agent, again);
+  application.waiting = outcome == ISuccession::Claim::waiting;
+  if (outcome != ISuccession::Claim::granted) return false;
+  team(side).taken[application.unum] = false;
+  holder->state->assign(Side::none, 0, {}, false);
+  return true;
+}
+
+std::string GameStateAspect::join(AgentState& state, soccer::Application& application) {
   pitch();
+  const bool again = std::exchange(application.waiting, false);
+  const std::string& name = application.team;
   if (name.empty()) return "expected (teamname <name>) with a name, found none";
   if (!isPlainWord(name)) return "the team name holds a blank, a control character, or one of ( ) \" ' ; \\";
   // See contains the name up to 22 times, and clients read messages of at most 8 KiB.
@@ -163,25 +189,29 @@ std::string GameStateAspect::join(AgentState& state, const std::string& name, st
   if (name.size() > kMaxNameBytes)
     return fmt::format("the team name has {} bytes, at most {} are allowed", name.size(), kMaxNameBytes);
 
-  // A side with this name, or else one without a name.
-  Side side = Side::none;
-  for (Side s : {Side::left, Side::right}) {
-    if (side == Side::none && (team(s).name == name || team(s).name.empty())) side = s;
-  }
+  const Side side = sideFor(name);
   if (side == Side::none)
     return fmt::format("there are two teams already, '{}' and '{}': a third, '{}', cannot play", teams_[0].name,
                        teams_[1].name, name);
 
   // The number.
   const int maxUnum = pitch_.settings().teamSize;
+  std::int64_t unum = application.unum;
   if (unum < 0 || unum > maxUnum) return fmt::format("number {} is not one of 1..{}", unum, maxUnum);
   Team& wanted = team(side);
   if (unum == 0)
     for (int n = maxUnum; n >= 1; --n)
       if (!wanted.has(n)) unum = n;
   if (unum == 0) return fmt::format("team '{}' has {} players already", name, maxUnum);
-  if (wanted.has(static_cast<int>(unum))) return fmt::format("number {} of team '{}' is taken", unum, name);
+  if (wanted.has(static_cast<int>(unum)) && !vacate(side, application, again))
+    return fmt::format("number {} of team '{}' is taken", unum, name);
   if (std::string problem = robotTypeProblem(side, state); !problem.empty()) return problem;
+
+  // A team that comes in place of another one begins without goals.
+  if (wanted.name != name && !wanted.name.empty()) {
+    kernel().log().info("soccer: team '{}' plays in place of '{}', which has left", name, wanted.name);
+    wanted = Team();
+  }
 
   // An earlier number of the agent becomes free.
   if (state.side() != Side::none) team(state.side()).taken[state.unum()] = false;

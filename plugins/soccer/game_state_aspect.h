@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <string>
@@ -80,9 +81,9 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
   /// Starts a kick-off with the ball at the centre. `side` none: the side that is due in this half, after the half's
   /// first kick-off a random one.
   void kickOff(Side side);
-  /// Assigns a team and a number (0: the lowest free one) to an agent. Returns "", or the reason why not; nothing has
-  /// changed then.
-  std::string join(AgentState& state, const std::string& teamName, std::int64_t unum);
+  /// Assigns a team and a number to an agent. Returns "", or the reason why not; nothing has changed then. A team that
+  /// has left frees its name, and a client that hangs its number.
+  std::string join(AgentState& state, soccer::Application& application);
   /// The next start position of the team [m]. Start positions form a grid in the team's half; they are not given back,
   /// and after the last the first comes again.
   Vec3 nextStartPosition(Side side);
@@ -101,6 +102,9 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
     std::vector<char> taken = std::vector<char>(kTeamSize + 1);  ///< by number
     int starts = 0;                                              ///< start positions used so far
     bool has(int unum) const { return std::size_t(unum) < taken.size() && taken[unum]; }
+    bool hasLeft() const {
+      return std::none_of(taken.begin(), taken.end(), [](char t) { return t != 0; });
+    }
   };
   Team& team(Side s) { return teams_[s == Side::right]; }
   const Team& team(Side s) const { return teams_[s == Side::right]; }
@@ -115,6 +119,11 @@ class GameStateAspect : public SoccerControlAspect, public IStatus, public IJoin
   /// The side of a kick-off for which none was named.
   Side dueSide();
   void swapSides();
+  /// The side for a team of this name: its own, or one without a team, or one whose team has left; none: there is none.
+  Side sideFor(const std::string& name) const;
+  /// Takes the number from a player whose client hangs; false: from none. `again`: see ISuccession. Sets
+  /// application.waiting.
+  bool vacate(Side side, soccer::Application& application, bool again);
   /// Why the type of the robot is not allowed in the team, by the league's limits; "": it is.
   std::string robotTypeProblem(Side side, const AgentState& joining) const;
 

@@ -19,8 +19,7 @@ class InitEffector : public Effector {
   std::string predicate() const override { return std::string(soccer::kInit); }
   std::string act(const Element& action) override {
     const IJoinPolicy::Name name = soccer::readInit(action);
-    unum_ = name.number;
-    team_ = name.team;
+    wanted_ = {std::string(name.team), name.number, false};
     pending_ = true;
     return soccer::remarkOnInit(action);
   }
@@ -31,37 +30,43 @@ class InitEffector : public Effector {
 
  private:
   void prepare(const Event&) {
-    if (!std::exchange(pending_, false)) return;
     match_.refresh(*this);
-    GameStateAspect* game = match_.game();
     AgentState* state = match_.state();
+    const bool again = !std::exchange(pending_, false);
+    if (again && (!state || !state->application().waiting)) return;
+    GameStateAspect* game = match_.game();
     AgentAspect* agent = match_.agent();
     if (!game || !state || !agent || !game->pitch().ready()) {
       return refuse(
           0, [] { return "init refused: expected an AgentState in the robot and soccer's rules below game control"; });
     }
-    const bool first = state->side() == soccer::Side::none;
+    const soccer::Side before = state->side();
+    if (!again) state->application() = wanted_;
+    const soccer::Application& wanted = state->application();
     if (const std::string problem = join(*game, *state); !problem.empty()) {
       // An agent may repeat it in every cycle.
       if (std::exchange(lastProblem_, problem) != problem && mayLog() && game->mayLogJoin())
         kernel().log().warning("agent {}: init refused: {}", agent->number(), problem);
     } else {
       if (mayLog() && game->mayLogJoin())
-        kernel().log().info("agent {}: plays for '{}' ({}) with number {}", agent->number(), team_,
+        kernel().log().info("agent {}: plays for '{}' ({}) with number {}", agent->number(), wanted.team,
                             soccer::sideName(state->side()), state->unum());
       lastProblem_.clear();
       setMaterials(*agent, state->side(), state->unum());
       if (auto* scene = game->pitch().scene()) scene->markModified();
     }
-    // A repeated init moves the robot only while beams are allowed, too.
-    if (first || game->paused()) place(*game, state->side());
+    // A repeated init moves the robot only while beams are allowed, too; waiting for a number does not move it.
+    const bool joined = before == soccer::Side::none && state->side() != before;
+    if (again ? joined : before == soccer::Side::none || game->paused()) place(*game, state->side());
   }
 
-  /// Adds the agent to the team; returns "" or the reason why not.
-  std::string join(GameStateAspect& game, AgentState& state) const {
-    if (state.side() != soccer::Side::none && state.team() == team_ && (unum_ == 0 || unum_ == state.unum()))
-      return "it plays already";
-    return game.join(state, team_, unum_);
+  /// Adds the agent to the team that its application names; returns "" or the reason why not.
+  static std::string join(GameStateAspect& game, AgentState& state) {
+    soccer::Application& wanted = state.application();
+    const bool plays = state.side() != soccer::Side::none && state.team() == wanted.team;
+    if (!plays || (wanted.unum != 0 && wanted.unum != state.unum())) return game.join(state, wanted);
+    wanted.waiting = false;
+    return "it plays already";
   }
 
   void place(GameStateAspect& game, soccer::Side side) {
@@ -84,8 +89,8 @@ class InitEffector : public Effector {
   static constexpr double kRefusedHeight = 10;  ///< of a robot without a team [m]
   MatchLookup match_;
   int lines_ = 0;
-  std::int64_t unum_ = 0;
-  std::string team_, lastProblem_;
+  soccer::Application wanted_;  ///< of the last action
+  std::string lastProblem_;
   bool pending_ = false;
 };
 

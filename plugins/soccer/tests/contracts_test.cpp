@@ -9,22 +9,26 @@ using namespace spark::test;
 
 // The interfaces through which plugins and programs without knowledge of the game use soccer.
 
-TEST_CASE("the soccer status has only play mode and score") {
+TEST_CASE("the soccer status has play mode, score and teams") {
   SoccerMatch match;
   match.importField();
   const auto& game = match.kernel.root().require<IStatus>("/sys/server/gamecontrol/GameStateAspect");
   match.setMode("PlayOn");
   const List scores{3, 1};
   callMethod(match.at("/sys/server/gamecontrol/GameStateAspect"), "setScores", scores);
+  match.join("Reds", 1);
   std::vector<StatusEntry> entries;
   game.report(entries);
-  REQUIRE(entries.size() == 2);
+  REQUIRE(entries.size() == 3);
   CHECK(entries[0].name == "playMode");
   CHECK(entries[0].value == Value("PlayOn"));
   CHECK(entries[1].name == "score");
   CHECK(entries[1].value == Value(List{3, 1}));
   CHECK(entries[1].parts ==
         std::vector<std::string>{"Left", "Right"});  // the columns scoreLeft and scoreRight of a batch
+  CHECK(entries[2].name == "teams");
+  CHECK(entries[2].value == Value(List{"Reds", ""}));
+  CHECK(entries[2].parts == entries[1].parts);
   CHECK(std::all_of(entries.begin(), entries.end(), isStatusWord));
 }
 

@@ -302,3 +302,26 @@ TEST_CASE("robots without a team collide with no other robot, and become solid w
   h.run(10);
   CHECK((std::abs(h.bodyOf(2).state().position.x() + 4.9) < 0.01) == detached);
 }
+
+TEST_CASE("a new team takes the side of one whose players have all left, and begins without goals", "[soccer]") {
+  SoccerMatch h;
+  h.importField();
+  h.join("A", 1), h.join("A", 2), h.join("B", 1);
+  h.trainer("(score (left 3)(right 1))");
+  const auto team = [&h](const char* side) {
+    return h.get("/sys/server/gamecontrol/GameStateAspect", side).toString();
+  };
+  h.trainer("(kill (unum 1)(team Left))");
+  h.run(2);
+  h.join("C", 1);
+  CHECK(team("teamLeft") == "A");
+  h.trainer("(kill (unum 2)(team Left))");
+  h.run(2);
+  CHECK(team("teamLeft") == "A");  // for the score board
+  h.join("C", 3);
+  CHECK(team("teamLeft") == "C");
+  CHECK(team("teamRight") == "B");
+  CHECK(h.score() == "{0, 1}");
+  h.join("A", 4);
+  CHECK(team("teamLeft") == "C");
+}
