@@ -30,7 +30,7 @@ function files()
   return server
 end
 
---- Scene server with the importers of RSG, MJCF, URDF and Webots, and an empty active scene at /usr/scene. `--set
+--- Scene server with the importers of RSG, MJCF, URDF, Webots and 3D models, and an empty active scene at /usr/scene. `--set
 --- transactionalImport=true` makes all imports that fail leave the scene unchanged.
 function scene()
   local transactional = option{ name = "transactionalImport", default = "byLanguage",
@@ -42,12 +42,14 @@ function scene()
   plugin "scene-mjcf"
   plugin "scene-urdf"
   plugin "scene-webots"
+  plugin "scene-meshes"
   local server = new("SceneServer", "/sys/server/scene")
   server.transactionalImport = transactional
   new("RsgImporter", "/sys/server/scene/rsg")
   new("MjcfImporter", "/sys/server/scene/mjcf")
   new("UrdfImporter", "/sys/server/scene/urdf")
   new("WebotsImporter", "/sys/server/scene/webots")
+  new("MeshImporter", "/sys/server/scene/meshes")
   new("Scene", "/usr/scene")
   return server
 end

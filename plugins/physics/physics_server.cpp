@@ -43,6 +43,17 @@ void PhysicsServer::describe(Description<PhysicsServer>& d) {
       .range(1, 16)
       .doc("Maximum number of contact points of two colliders.");
   d.method("settle", &S::settle).doc("Moves the origins of bodies to their centres of mass, as the next step would.");
+  d.method("castRay", &S::rayFor)
+      .parameters({"from [m]", "direction", "length [m]"})
+      .doc(
+          "What a ray meets first, in the world frame: { distance, path of the collider, position, normal of the "
+          "surface }; nil: nothing within that length.");
+  d.method("boundingBox", &S::boxOf)
+      .parameters({"node"})
+      .doc(
+          "Two corners of the box along the world's axes around all that collides at a node and below it, { low, high "
+          "} "
+          "in m; planes do not count; nil: there is nothing.");
   d.on<&PhysicsServer::physics>(phase::kPhysics);
   d.on<&PhysicsServer::place>(phase::kPlace);
   d.on<&PhysicsServer::restored>(kRestored);
@@ -309,6 +320,31 @@ std::optional<RayHit> PhysicsServer::castRay(const Vec3& from, const Vec3& direc
   if (!hit) return std::nullopt;
   return RayHit{&colliderOf(world.model().geoms[hit->geom].owner), hit->distance, from + hit->distance * unit,
                 hit->normal};
+}
+
+Value PhysicsServer::rayFor(const Vec3& from, const Vec3& direction, double length) {
+  const std::optional<RayHit> hit = castRay(from, direction, length, nullptr);
+  if (!hit) return {};
+  return List{hit->distance, hit->collider->leaf().path(), Convert<Vec3>::to(hit->position),
+              Convert<Vec3>::to(hit->normal)};
+}
+
+Value PhysicsServer::boxOf(const std::string& node) {
+  Leaf* const at = find<Leaf>(node);
+  if (!at) throw Error(fmt::format("{}.boundingBox: expected the path of a node, found '{}'", path(), node));
+  std::vector<ICollider*> colliders;
+  if (const auto own = at->as<ICollider>()) colliders.push_back(own);
+  if (const auto folder = at->as<Node>()) folder->collect(colliders);
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (const ICollider* collider : colliders) {
+    Vec3 itsLow, itsHigh;
+    collider->bounds(itsLow, itsHigh);
+    if (!itsLow.allFinite() || !itsHigh.allFinite()) continue;  // a plane, or one without geometry
+    low = low.cwiseMin(itsLow);
+    high = high.cwiseMax(itsHigh);
+  }
+  if (!low.allFinite()) return {};
+  return List{Convert<Vec3>::to(low), Convert<Vec3>::to(high)};
 }
 
 bool PhysicsServer::isHidden(const Vec3& from, const Vec3& to, const IRigidBody* own, const Node* except) {

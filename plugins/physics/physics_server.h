@@ -82,6 +82,11 @@ class PhysicsServer : public Node, public IPhysicsServer, public IHearing {
   /// Keeps the world poses of colliders and transforms around bodies whose origin moved to their centre of mass.
   void shiftSurroundings();
   /// shiftSurroundings() before the first step, for what reads a scene then.
+  /// For scripts: { distance [m], path of the collider, position, normal } of castRay(); nil where it meets nothing.
+  Value rayFor(const Vec3& from, const Vec3& direction, double length);
+  /// For scripts: { low, high } of the box around all colliders of a node and below it, world frame [m], without
+  /// planes; nil where there are none. Throws Error when the node is not there.
+  Value boxOf(const std::string& node);
   void settle() {
     if (!refresh()) return;
     placeTransforms();
