@@ -205,6 +205,7 @@ struct Writer {
     put(R"( friction="{}" condim="{}" priority="{}")", fmt::join(m.friction, " "), m.condim, m.priority);
     put(R"( solref="{}" solimp="{}" solmix="{}" margin="{}" gap="{}")", fmt::join(m.solref, " "),
         fmt::join(m.solimp, " "), m.solmix, m.margin, m.gap);
+    if (m.ellipsoidDrag != 0) put(R"( fluidshape="ellipsoid" fluidcoef="{}")", fmt::join(m.dragCoefficients, " "));
     put("/>\n");
   }
 
@@ -341,7 +342,7 @@ struct Writer {
     return parts;
   }
   void putInertial(const engine::Body& b, const engine::Part& part) {
-    if (part.mass == 0) return;
+    if (part.mass == 0 && (part.center - b.linkOrigin).isZero()) return;
     // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
     const auto [moments, axes] = principalAxes(part.inertia, part.axes);
     put(R"(<inertial mass="{}" diaginertia="{}")", part.mass, text(moments));
@@ -399,16 +400,20 @@ struct Writer {
       // Geoms that share a mesh share one here.
       const engine::Mesh* const mesh = isNothing(i) ? nullptr : meshFor(i);
       const std::span<const Piece> parts = piecesFor(i);
-      if (mesh && parts.empty() && meshOf.emplace(mesh, i).second)
-        put(R"(<mesh name="m{}" vertex="{}" face="{}"/>)", i, fmt::join(mesh->vertices, " "),
-            fmt::join(mesh->triangles, " "));
+      if (mesh && parts.empty() && meshOf.emplace(mesh, i).second) {
+        put(R"(<mesh name="m{}" vertex="{}")", i, fmt::join(mesh->vertices, " "));
+        // Of vertices alone MuJoCo makes the triangles itself.
+        if (!mesh->triangles.empty()) put(R"( face="{}")", fmt::join(mesh->triangles, " "));
+        put("/>");
+      }
       if (!parts.empty() && piecesIn.emplace(mesh, i).second)
         for (std::size_t k = 0; k < parts.size(); ++k)
           put(R"(<mesh name="m{}p{}" vertex="{}"/>)", i, k, fmt::join(parts[k], " "));
       // Its heights are written to the compiled model: see takeHeights().
       if (s.shape == Shape::heightField)
-        put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{} {} {} 1"/>)", geomName(i), s.heightField->columns,
-            s.heightField->rows, s.heightField->width / 2, s.heightField->depth / 2, spanOf(*s.heightField));
+        put(R"(<hfield name="{}" ncol="{}" nrow="{}" size="{} {} {} {}"/>)", geomName(i), s.heightField->columns,
+            s.heightField->rows, s.heightField->width / 2, s.heightField->depth / 2, spanOf(*s.heightField),
+            model.extensions.geoms[i].get<SurfaceNumbers>().thickness);
     }
     put("</asset>\n");
   }
@@ -434,7 +439,9 @@ bool hasActuators(const Model& model) { return optionsOf(model).integrator == 1;
 
 bool hasOwnDrag(const Model& model) {
   const OptionNumbers o = optionsOf(model);
-  return (o.density > 0 || o.viscosity > 0) && o.integrator != 1;
+  const auto hasDrag = [](const engine::Blocks& b) { return b.get<SurfaceNumbers>().ellipsoidDrag != 0; };
+  const auto& geoms = model.extensions.geoms;
+  return (o.density > 0 || o.viscosity > 0) && o.integrator != 1 && std::none_of(geoms.begin(), geoms.end(), hasDrag);
 }
 
 std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes,
@@ -450,12 +457,13 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
   w.put("<mujoco>\n");
   w.put(R"(<compiler angle="radian" inertiafromgeom="false" balanceinertia="true"/>)");
   const OptionNumbers o = optionsOf(model);
+  const bool ownDrag = hasOwnDrag(model);
   w.put(R"(<option timestep="{}" gravity="{}" integrator="{}" cone="{}" solver="{}" iterations="{}")", step,
         Writer::text(model.parameters.gravity), OptionNumbers::kIntegrators[static_cast<std::size_t>(o.integrator)],
         OptionNumbers::kCones[static_cast<std::size_t>(o.cone)],
         OptionNumbers::kSolvers[static_cast<std::size_t>(o.solver)], o.iterations);
   w.put(R"( tolerance="{}" impratio="{}" density="{}" viscosity="{}" wind="{}")", o.tolerance, o.impratio,
-        hasOwnDrag(model) ? 0 : o.density, hasOwnDrag(model) ? 0 : o.viscosity, fmt::join(o.wind, " "));
+        ownDrag ? 0 : o.density, ownDrag ? 0 : o.viscosity, fmt::join(o.wind, " "));
   w.put(R"( noslip_iterations="{}" noslip_tolerance="{}" mpr_iterations="{}" mpr_tolerance="{}")", o.noslipIterations,
         o.noslipTolerance, o.mprIterations, o.mprTolerance);
   w.put(R"( o_margin="{}" o_solref="{}" o_solimp="{}">)", o.overrideMargin, fmt::join(o.overrideSolref, " "),

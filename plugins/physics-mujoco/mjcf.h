@@ -56,7 +56,7 @@ std::string freeJointName(Index body);
 int coordinatesOf(engine::JointType type);
 
 /// True when a medium drags at the bodies, and MuJoCo is not told: MujocoWorld does it, at a fraction of the cost. An
-/// implicit integrator needs MuJoCo's own.
+/// implicit integrator, and drag at ellipsoids, need MuJoCo's own.
 bool hasOwnDrag(const engine::Model& model);
 
 /// Difference between the least and the greatest height of a field, above 0 [m].

@@ -55,9 +55,16 @@ void MujocoWorld::thinOut(std::span<const std::pair<std::uint64_t, int>> pair) {
   engine::choosePoints(
       pair.size(), static_cast<std::size_t>(perPair_), [&](std::size_t i) { return toVec(contact(i).pos); },
       [&](std::size_t i) { return -contact(i).dist; }, apart_);
-  spare_.resize(pairs_.size());
+  spare_.resize(pairs_.size(), Use::reported);
+  const bool all = options_.allContacts != 0 && !isPiece(contact(0).geom1) && !isPiece(contact(0).geom2);
+  const Use use = all ? Use::solved : Use::dropped;
   for (std::size_t i = 0; i < pair.size(); ++i)
-    if (apart_[i] >= 0) spare_[static_cast<std::size_t>(pair[i].second)] = 1;
+    if (apart_[i] >= 0) spare_[static_cast<std::size_t>(pair[i].second)] = use;
+}
+
+bool MujocoWorld::isPiece(int geom) const {
+  const Index i = geomOf_[geom];
+  return i != kNone && model_->geoms[i].shape.shape == engine::Shape::mesh && model_->geoms[i].body == kNone;
 }
 
 void MujocoWorld::prepareAgain(const Model& model) {
@@ -73,7 +80,7 @@ void MujocoWorld::detect(const Model& model, const State& state, engine::PairFil
   prepare(model);
   listed_.clear();
   for (int i = 0; i < d_->ncon; ++i) {
-    if (isSpare(i)) continue;
+    if (useOf(i) != Use::reported) continue;
     const mjContact& from = d_->contact[i];
     Index a = geomOf_[from.geom1], b = geomOf_[from.geom2];
     const bool swapped = !engine::comesFirst(model.geoms[a], model.geoms[b]);
@@ -101,23 +108,38 @@ void MujocoWorld::releaseUnsolved() {
   for (int i = 0; i < d_->ncon; ++i) {
     const mjContact& c = d_->contact[i];
     if (c.efc_address < 0) continue;
-    if (!isSpare(i) && !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
+    if (useOf(i) != Use::dropped && !contains(ghosts_, pairOf(geomOf_[c.geom1], geomOf_[c.geom2]))) continue;
     const int rows = c.dim == 1 ? 1 : m_->opt.cone == mjCONE_PYRAMIDAL ? 2 * (c.dim - 1) : c.dim;
     for (int row = c.efc_address; row < c.efc_address + rows; ++row) d_->efc_D[row] = 1e-15, d_->efc_R[row] = 1e15;
   }
 }
 
+Vec3 MujocoWorld::forceOf(int contact, Index on) const {
+  mjtNum force[6];  // in the contact's frame, on the second geom
+  mj_contactForce(m_.get(), d_.get(), contact, force);
+  const mjContact& from = d_->contact[contact];
+  Vec3 onSecond = Vec3::Zero();
+  for (int k = 0; k < 3; ++k) onSecond += force[k] * toVec(from.frame + 3 * k);
+  return geomOf_[from.geom2] == on ? onSecond : Vec3(-onSecond);
+}
+
 void MujocoWorld::readContactForces(std::span<Contact> contacts) const {
   if (contacts.size() != listed_.size()) return;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    Contact& c = contacts[i];
-    if (!c.feedback || !c.solve) continue;
-    mjtNum force[6];  // in the contact's frame, on the second geom
-    mj_contactForce(m_.get(), d_.get(), listed_[i], force);
-    const mjContact& from = d_->contact[listed_[i]];
-    Vec3 onSecond = Vec3::Zero();
-    for (int k = 0; k < 3; ++k) onSecond += force[k] * toVec(from.frame + 3 * k);
-    c.forceOnA = geomOf_[from.geom2] == c.geomA ? onSecond : Vec3(-onSecond);
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (Contact& c = contacts[i]; c.feedback && c.solve) c.forceOnA = forceOf(listed_[i], c.geomA);
+  if (std::none_of(contacts.begin(), contacts.end(), [](const Contact& c) { return c.feedback; })) return;
+  // The force of one that is not reported is added to the nearest one of its pair.
+  for (int i = 0; i < d_->ncon && !spare_.empty(); ++i) {
+    if (useOf(i) != Use::solved) continue;
+    const std::uint64_t pair = pairOf(geomOf_[d_->contact[i].geom1], geomOf_[d_->contact[i].geom2]);
+    Contact* nearest = nullptr;
+    double least = HUGE_VAL;
+    for (Contact& c : contacts) {
+      if (pairOf(c.geomA, c.geomB) != pair) continue;
+      const double distance = (c.position - toVec(d_->contact[i].pos)).squaredNorm();
+      if (distance < least) nearest = &c, least = distance;
+    }
+    if (nearest && nearest->feedback && nearest->solve) nearest->forceOnA += forceOf(i, nearest->geomA);
   }
 }
 

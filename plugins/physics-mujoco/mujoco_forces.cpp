@@ -65,7 +65,6 @@ void MujocoWorld::addBodyDamping(const Model& model, Index body, Vec3& force, Ve
 /// for each body, in most of the time of a step.
 void MujocoWorld::applyForces(const Model& model, const State& state) {
   mju_zero(d_->qfrc_applied, m_->nv);
-  const bool medium = hasOwnDrag(model);
   std::fill(wrenches_.begin(), wrenches_.end(), Wrench{});
   bool any = false;
   for (Index i = 0; i < state.bodies.size(); ++i) {
@@ -79,7 +78,7 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
     wrenches_[static_cast<std::size_t>(body)] = {torque + armOf(body, centreOf(body)).cross(force), force};
   }
   const auto addDrag = [&](int body) { wrenches_[static_cast<std::size_t>(body)] += dragOf(body); };
-  for (Index i = 0; medium && i < trees_.links.size(); ++i) {
+  for (Index i = 0; ownDrag_ && i < trees_.links.size(); ++i) {
     if (trees_.links[i].body == kNone || origins_[i].mujocoBody < 0) continue;
     any = true;
     addDrag(origins_[i].mujocoBody);

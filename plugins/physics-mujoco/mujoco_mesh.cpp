@@ -40,7 +40,7 @@ void MujocoMesh::describe(Description<MujocoMesh>& d) {
       .doc("x y z of each vertex, in the collider's frame. Setting it removes all triangles.");
   d.property("triangles", &MujocoMesh::triangles, &MujocoMesh::setTriangles)
       .min(0)
-      .doc("Three vertex indices of each triangle, from 0. Without triangles the mesh has no effect.");
+      .doc("Three vertex indices of each triangle, from 0. Without triangles MuJoCo makes them itself.");
 }
 
 std::vector<double> MujocoMesh::vertices() const {
@@ -76,7 +76,7 @@ void MujocoMesh::setTriangles(const std::vector<std::int64_t>& triangles) {
 
 void MujocoMesh::take(engine::Mesh mesh) {
   const auto before = std::exchange(mesh_, shared(std::move(mesh)));  // which ends when it is in the model no more
-  set<&mujoco::MeshNumbers::mesh>(mesh_->triangles.empty() ? nullptr : mesh_.get());
+  set<&mujoco::MeshNumbers::mesh>(mesh_->vertices.empty() ? nullptr : mesh_.get());
 }
 
 }  // namespace spark

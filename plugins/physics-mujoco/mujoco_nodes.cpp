@@ -32,6 +32,14 @@ void MujocoSurface::describe(Description<MujocoSurface>& d) {
   d.property("ellipsoid", &S::get<&N::ellipsoid>, &S::set<&N::ellipsoid>)
       .unit("m")
       .doc("Half axes of the ellipsoid that a convex collider stands for; 0: none.");
+  d.property("thickness", &S::get<&N::thickness>, &S::set<&N::thickness>)
+      .unit("m")
+      .range(1e-6, 1e6)
+      .doc("Of a height field, below its lowest point.");
+  d.property("ellipsoidDrag", &S::is<&N::ellipsoidDrag>, &S::setIs<&N::ellipsoidDrag>)
+      .doc("A medium drags at the ellipsoid of the shape; otherwise at the box that has the inertia of the body.");
+  d.property("dragCoefficients", &S::get<&N::dragCoefficients>, &S::set<&N::dragCoefficients>)
+      .doc("Of that ellipsoid: blunt, slender and angular drag, Kutta and Magnus lift.");
 }
 
 void MujocoSurface::setCondim(std::int64_t n) {
@@ -104,6 +112,8 @@ void MujocoOptions::describe(Description<MujocoOptions>& d) {
   d.property("refsafe", &O::is<&N::refsafe>, &O::setIs<&N::refsafe>)
       .doc("Time constants of constraints are at least two steps.");
   d.property("multiccd", &O::is<&N::multiccd>, &O::setIs<&N::multiccd>).doc("Convex shapes touch in several points.");
+  d.property("allContacts", &O::is<&N::allContacts>, &O::setIs<&N::allContacts>)
+      .doc("Contacts beyond contactsPerPair are solved, too, as in MuJoCo alone; they are not reported.");
   d.property("overrides", &O::is<&N::overrides>, &O::setIs<&N::overrides>)
       .doc("All contacts have the three numbers below in place of their own.");
   d.property("overrideMargin", &O::get<&N::overrideMargin>, &O::set<&N::overrideMargin>)

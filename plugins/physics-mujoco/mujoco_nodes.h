@@ -22,6 +22,9 @@ struct SurfaceNumbers {
   double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
   double solmix = 1;           ///< weight of solref and solimp against those of another surface
   std::array<double, 3> ellipsoid{0, 0, 0};  ///< half axes, where a convex shape is an ellipsoid [m]; 0: it is none
+  double thickness = 1;                      ///< of a height field, below its lowest point [m]
+  std::int64_t ellipsoidDrag = 0;            ///< a medium drags at its ellipsoid, with these coefficients
+  std::array<double, 5> dragCoefficients{0.5, 0.25, 1.5, 1, 1};  ///< blunt, slender, angular; Kutta, Magnus
 };
 
 /// An axis of a joint (MuJoCo's documentation, "joint"): time constant [s] and damping ratio, and impedance, of the
@@ -52,6 +55,7 @@ struct OptionNumbers {
   double mprTolerance = 1e-6;                         ///< at which it stops
   std::int64_t refsafe = 1;                           ///< time constants are at least two steps
   std::int64_t multiccd = 0;                          ///< convex shapes touch in several points
+  std::int64_t allContacts = 0;                       ///< those beyond the most of a pair are solved, too
   std::int64_t overrides = 0;                         ///< all contacts have these numbers:
   double overrideMargin = 0;                          ///< m
   std::array<double, 2> overrideSolref{0.02, 1};
@@ -68,6 +72,14 @@ class MujocoSurface : public engine::Extension<mujoco::SurfaceNumbers> {
 
  private:
   void setCondim(std::int64_t n);
+  template <auto Member>
+  bool is() const {
+    return numbers().*Member != 0;
+  }
+  template <auto Member>
+  void setIs(bool on) {
+    set<Member>(on);
+  }
 };
 
 /// What MuJoCo alone reads of an axis of the joint above it.

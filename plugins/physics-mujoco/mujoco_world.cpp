@@ -174,6 +174,7 @@ void MujocoWorld::bind(const Model& model) {
     bindMotors(model.joints[link.joint], link.joint, origins_[i].mujocoJoints);
   }
   options_ = optionsOf(model);
+  ownDrag_ = hasOwnDrag(model);
   joined_.clear();
   engine::forEachJoined(model, [&](Index a, Index b) { joined_.push_back(pairOf(a, b)); });
   std::sort(joined_.begin(), joined_.end());

@@ -120,11 +120,17 @@ class MujocoWorld {
   void findSpare();
   /// The same for the contacts of one pair, of which there are more.
   void thinOut(std::span<const std::pair<std::uint64_t, int>> pair);
-  bool isSpare(int contact) const { return !spare_.empty() && spare_[static_cast<std::size_t>(contact)]; }
+  /// What happens to a contact: it is reported, or it is one too many and only solved, or not even that.
+  enum class Use : std::uint8_t { reported, solved, dropped };
+  Use useOf(int contact) const { return spare_.empty() ? Use::reported : spare_[static_cast<std::size_t>(contact)]; }
+  /// True for the pieces of a static mesh: a pair of those touches in more points than a hull would.
+  bool isPiece(int geom) const;
   /// Lists the pairs whose contacts are not to be solved, and takes their force.
   void findUnsolved(std::span<const engine::Contact> contacts);
   void releaseUnsolved();
   void readContactForces(std::span<engine::Contact> contacts) const;
+  /// The force of a contact on one of its geoms, world frame [N].
+  Vec3 forceOf(int contact, Index on) const;
   static bool mayTouch(void* world, int geom1, int geom2);
   void bindMotors(const engine::Joint& j, Index joint, const std::array<int, 3>& mujocoJoints);
   /// What a link was made of: identities in the model, 0: none; and MuJoCo's numbers.
@@ -145,6 +151,7 @@ class MujocoWorld {
   DataPointer d_;
   std::vector<int> bodyId_;  ///< MuJoCo's, by body; -1: it does not move yet
   OptionNumbers options_;
+  bool ownDrag_ = false;          ///< see hasOwnDrag()
   std::vector<Index> rootOf_;     ///< by link: the first of its tree
   std::vector<Index> geomOf_;     ///< by MuJoCo's geom; kNone: it was removed
   std::vector<DofMotor> motors_;  ///< by degree of freedom
@@ -158,7 +165,7 @@ class MujocoWorld {
   std::vector<std::uint64_t> joined_;                   ///< pairs of bodies that joints connect, sorted
   std::vector<std::uint64_t> ghosts_;                   ///< pairs of geoms whose contacts are not solved, sorted
   int perPair_ = 16;                                    ///< of the last detect()
-  std::vector<std::uint8_t> spare_;                     ///< by MuJoCo's contact; empty: none is
+  std::vector<Use> spare_;                              ///< by MuJoCo's contact; empty: all are reported
   std::vector<std::pair<std::uint64_t, int>> pairs_;    ///< of findSpare(): pair of geoms, contact
   std::vector<double> apart_;     ///< of thinOut(): squared distance from the chosen ones; -1: is one
   std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
