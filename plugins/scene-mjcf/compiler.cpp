@@ -18,7 +18,7 @@ void Compiler::read(Attributes& a) {
   degrees_ = a.word("angle", {"degree", "radian"}, degrees_ ? "degree" : "radian") == "degree";
   autolimits_ = a.flag("autolimits", autolimits_);
   eulerSequence_ = a.text("eulerseq", eulerSequence_.c_str());
-  if (eulerSequence_.size() != 3 || eulerSequence_.find_first_not_of("xyzXYZ") != std::string::npos)
+  if (eulerSequence_.size() != 3)
     throw a.element().error(fmt::format("expected three of x y z X Y Z for 'eulerseq', found '{}'", eulerSequence_));
   std::string folder = a.text("meshdir", a.text("assetdir", meshFolder_.c_str()).c_str());
   if (!folder.empty() && folder.back() != '/') folder += '/';
@@ -60,8 +60,9 @@ std::optional<Mat3> Compiler::orientation(Attributes& a) const {
   std::array<double, 4> four{};
   if (a.take("quat", four)) {
     const Eigen::Quaterniond q(four[0], four[1], four[2], four[3]);
-    if (!(q.norm() > 1e-10)) throw a.element().error("expected a quaternion that is not 0");
-    return q.normalized().toRotationMatrix();
+    if (q.norm() > 1e-10) return q.normalized().toRotationMatrix();
+    a.note(fmt::format("a 'quat' of 0 in <{}> is taken as no rotation", a.element().tag()));
+    return Mat3::Identity();
   }
   if (a.take("axisangle", four)) {
     const Vec3 axis(four[0], four[1], four[2]);
@@ -82,6 +83,9 @@ std::optional<Mat3> Compiler::orientation(Attributes& a) const {
     return turnTo(z);
   }
   if (Vec3 angles; a.take("euler", angles)) {
+    if (eulerSequence_.find_first_not_of("xyzXYZ") != std::string::npos)
+      throw a.element().error(
+          fmt::format("expected an 'eulerseq' of x y z X Y Z in <compiler>, found '{}'", eulerSequence_));
     Mat3 r = Mat3::Identity();
     for (int i = 0; i < 3; ++i) {
       const char letter = eulerSequence_[static_cast<std::size_t>(i)];

@@ -46,6 +46,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
   g.from = a.element();
   g.name = a.text("name");
   contact(a, g);
+  body.isWeighed |= compiler_.weighs(g.group);
   const std::string type =
       a.word("type", {"plane", "hfield", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"}, "sphere");
   const double density = a.number("density", 1000);
@@ -61,7 +62,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
     unsupported_.add(g.from, what);
     return std::nullopt;
   };
-  if (type == "hfield" || type == "sdf") return without(fmt::format("a <geom> of type {} is not supported", type));
+  if (type == "sdf") return without(fmt::format("a <geom> of type {} is not supported", type));
   if (type != "mesh" && a.has("mesh") && compiler_.fitsBounds())
     return without("a <geom> that is fitted to the bounds of a mesh (fitaabb) is not supported");
   const bool world = body.parent < 0, counts = !body.hasInertial || compiler_.inertiaFromGeom() == "true";
@@ -74,7 +75,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
 
   place(a, type, frame, g);
   const bool ellipsoid = type == "ellipsoid";
-  if (type != "plane" && !weightless && compiler_.weighs(g.group)) {
+  if (type != "plane" && type != "hfield" && !weightless && compiler_.weighs(g.group)) {
     const engine::Mass own = massOf(a, type, weight(), g);
     if (own.mass > 0)
       g.mass = moved(own, g.pose);
@@ -125,6 +126,8 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
   m.margin = a.number("margin", 0);
   m.gap = a.number("gap", 0);
   m.solmix = a.number("solmix", 1);
+  m.ellipsoidDrag = a.word("fluidshape", {"none", "ellipsoid"}, "none") == "ellipsoid";
+  a.fill("fluidcoef", m.dragCoefficients);
 }
 
 /// Reads pose and shape.
@@ -171,6 +174,8 @@ void GeomReader::shape(Attributes& a, const std::string& type, const Vec3& size,
     s.length = 2 * size[1];
   } else if (type == "plane") {
     s.shape = Shape::plane;
+  } else if (type == "hfield") {
+    heightFields_.shape(a, g);
   } else {
     const Mesh& mesh = meshes_.get(a, unsupported_);
     s.shape = mesh.hull ? Shape::convex : Shape::mesh;

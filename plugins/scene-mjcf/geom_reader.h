@@ -3,6 +3,7 @@
 /// Reads the geoms of an MJCF model.
 
 #include "compiler.h"
+#include "height_fields.h"
 #include "meshes.h"
 #include "robot/geom_mass.h"
 #include "robot/model.h"
@@ -12,8 +13,8 @@ namespace spark::mjcf {
 /// Reads geoms: their shapes, their masses and their numbers of contacts. Its parts must outlive it.
 class GeomReader {
  public:
-  GeomReader(const Compiler& compiler, Meshes& meshes, Unsupported& unsupported)
-      : compiler_(compiler), meshes_(meshes), unsupported_(unsupported) {}
+  GeomReader(const Compiler& compiler, Meshes& meshes, HeightFields& heightFields, Unsupported& unsupported)
+      : compiler_(compiler), meshes_(meshes), heightFields_(heightFields), unsupported_(unsupported) {}
   /// Says that an element `pair` names a geom; to be called before the geom is read.
   void addToPairs(const std::string& geom) { inPairs_.insert(geom); }
   /// Reads an element `geom` of `body`; `frame`: of the `frame` elements around. nullopt for a geom that is not
@@ -31,6 +32,7 @@ class GeomReader {
 
   const Compiler& compiler_;
   Meshes& meshes_;
+  HeightFields& heightFields_;
   Unsupported& unsupported_;
   std::set<std::string, std::less<>> inPairs_;
 };

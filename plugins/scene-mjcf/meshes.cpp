@@ -118,7 +118,7 @@ void Meshes::load(Asset& m, Unsupported& unsupported) {
   if (m.inertia == "exact" || m.inertia == "convex") mesh.inertia = MeshInertia::exact;
   if (m.inertia == "legacy") mesh.inertia = MeshInertia::legacy;
   if (m.inertia == "shell") mesh.inertia = MeshInertia::shell;
-  if (mesh.hull) surfaces_[mesh.hull.get()] = mesh.surface;
+  if (mesh.hull) surfaces_[mesh.hull.get()] = read;
   m.loaded = std::move(mesh);
 }
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "api/files.h"
+#include "height_file.h"
 #include "meshes/mesh_file.h"
 #include "robot/builder.h"
 #include "spark/plugin.h"
@@ -35,7 +36,8 @@ void MjcfImporter::import(std::string_view file, Node& root, const List& argumen
       unsupported.add(document.root(), fmt::format("the mesh '{}' has {}, which do not collide", name, what));
     return mesh;
   };
-  const mjcf::Model model = mjcf::readModel(document, readMesh, unsupported);
+  const auto readHeights = [&](const std::string& name) { return mjcf::readHeightFile(name, files.read(name)); };
+  const mjcf::Model model = mjcf::readModel(document, readMesh, unsupported, readHeights);
   mjcf::Builder builder(model, arguments.empty() ? "" : arguments.front().plain(), strict_, unsupported);
   builder.build(root);
   ++imports_;

@@ -35,8 +35,9 @@ Firmness firmness(Attributes& a) {
 
 }  // namespace
 
-Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported) {
-  return Reader(document, readMesh, unsupported).read();
+Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported,
+                const ReadHeights& readHeights) {
+  return Reader(document, readMesh, readHeights, unsupported).read();
 }
 
 Model Reader::read() {
@@ -124,10 +125,14 @@ void Reader::option(const Element& e) {
 }
 
 void Reader::asset(const Element& e) {
-  if (e.tag() == "mesh") {
+  if (e.tag() == "mesh" || e.tag() == "hfield") {
     unsupported_.attempt(e, [&] {
       Attributes a = attributes(e);
-      meshes_.add(a, document_.folder() + compiler_.meshFolder(), compiler_);
+      const std::string folder = document_.folder() + compiler_.meshFolder();
+      if (e.tag() == "mesh")
+        meshes_.add(a, folder, compiler_);
+      else
+        heightFields_.add(a, folder, compiler_);
     });
   } else if (e.tag() != "material" && e.tag() != "texture") {
     unsupported_.element(e);
@@ -274,6 +279,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
     j.range = {0, inUnits((*limit.range)[1])};
   } else if (ball) {
     j.limited = false;
+    if (limit.word == "true") a.note("a ball <joint> that is limited to 0 has no limit");
   } else if (const auto range = compiler_.limit(e, "range", limit)) {
     j.limited = true;
     j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
@@ -344,7 +350,11 @@ void Reader::finishMasses() {
     if (fromGeoms == "true" || (fromGeoms == "auto" && !b.hasInertial)) {
       b.mass = {0, Vec3::Zero(), Mat3::Zero()};
       b.inertiaAxes.setIdentity();
+      // Where MuJoCo 2.2.2 has the centre of a body that weighs nothing.
+      if (!b.isWeighed && !compiler_.global()) b.mass.center = b.pose.position;
       for (const Geom& g : b.geoms) {
+        // One without mass says where the centre of nothing is, which MuJoCo's equalities depend on.
+        if (b.mass.mass == 0 && compiler_.weighs(g.group)) b.mass.center = g.pose.position;
         if (!g.mass || g.mass->mass <= 0) continue;
         if (b.mass.mass == 0)
           b.inertiaAxes = g.pose.rotation;
@@ -354,6 +364,8 @@ void Reader::finishMasses() {
       }
     }
     compiler_.adjust(b.mass);
+    if (b.hasInertial && fromGeoms != "true")
+      balanceInertia(b.mass, b.from, "the <inertial> of a <body>", unsupported_);
   }
   weighLightBodies(model_, "a <body>", unsupported_, true);
   scaleMasses();

@@ -6,6 +6,7 @@
 #include "compiler.h"
 #include "constraint_reader.h"
 #include "geom_reader.h"
+#include "height_fields.h"
 #include "meshes.h"
 #include "robot/model.h"
 
@@ -14,8 +15,8 @@ namespace spark::mjcf {
 /// One run over a document.
 class Reader {
  public:
-  Reader(Document& document, const ReadMesh& readMesh, Unsupported& unsupported)
-      : document_(document), unsupported_(unsupported), meshes_(readMesh) {}
+  Reader(Document& document, const ReadMesh& readMesh, const ReadHeights& readHeights, Unsupported& unsupported)
+      : document_(document), unsupported_(unsupported), meshes_(readMesh), heightFields_(readHeights) {}
   Model read();
 
  private:
@@ -61,7 +62,8 @@ class Reader {
   Compiler compiler_;
   Defaults defaults_;
   Meshes meshes_;
-  GeomReader geoms_{compiler_, meshes_, unsupported_};
+  HeightFields heightFields_;
+  GeomReader geoms_{compiler_, meshes_, heightFields_, unsupported_};
   ActuatorReader actuators_{compiler_, defaults_, unsupported_};
   ConstraintReader constraints_{compiler_, defaults_, unsupported_};
   std::vector<Pose> globalPoses_;  ///< of bodies, with global coordinates

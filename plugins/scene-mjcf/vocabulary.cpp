@@ -55,6 +55,7 @@ constexpr Word kVocabulary[] = {
     {"asset", kSection, "", ""},
     {"mesh", "asset default", "name class file vertex face scale refpos refquat inertia",
      "normal texcoord smoothnormal content_type maxhullvert"},
+    {"hfield", "asset", "name file nrow ncol size elevation", "content_type"},
     {"texture", "asset", "",
      "name class type colorspace content_type file gridsize gridlayout fileright fileleft fileup filedown filefront "
      "fileback builtin rgb1 rgb2 mark markrgb random width height hflip vflip nchannel"},
@@ -71,9 +72,10 @@ constexpr Word kVocabulary[] = {
      "stiffness springref springdamper solreflimit solimplimit solreffriction solimpfriction margin",
      "group user"},
     {"geom", "worldbody body frame default",
-     "name class type pos quat axisangle xyaxes zaxis euler fromto size mesh fitscale contype conaffinity condim "
-     "priority friction solref solimp solmix margin gap density mass group",
-     "material rgba user hfield"},
+     "name class type pos quat axisangle xyaxes zaxis euler fromto size mesh hfield fitscale contype conaffinity "
+     "condim "
+     "priority friction solref solimp solmix margin gap density mass group fluidshape fluidcoef",
+     "material rgba user"},
     {"site", "worldbody body frame default", "name class pos quat axisangle xyaxes zaxis euler fromto",
      "type size group material rgba user"},
     {"camera", "worldbody body frame default", "",

@@ -26,6 +26,15 @@ std::string png(png_uint_32 format, const std::vector<T>& pixels, png_uint_32 wi
 }
 }  // namespace
 
+TEST_CASE("The red of a PNG file is its height where that is asked for") {
+  const std::vector<png_byte> pixels{51, 255, 0, 102, 0, 7, 255, 9, 9, 0, 80, 80, 0, 0, 0, 204, 204, 204};
+  CHECK(readHeights(png<png_byte>(PNG_FORMAT_RGB, pixels), HeightOf::red).heights ==
+        std::vector<float>{0, 0, 0.8f, 0.2f, 0.4f, 1});
+  // In 8 bits.
+  const auto deep = png<png_uint_16>(PNG_FORMAT_LINEAR_Y, {0, 255, 256, 0x33ff, 65280, 65535});
+  CHECK(readHeights(deep, HeightOf::red).heights == std::vector<float>{0.2f, 1, 1, 0, 0, 1 / 255.0f});
+}
+
 TEST_CASE("Grey numbers of a PNG file are heights, of the lowest row first") {
   const engine::HeightField f = readHeights(png<png_byte>(PNG_FORMAT_GRAY, {0, 51, 102, 153, 204, 255}));
   CHECK(f.columns == 3);

@@ -107,6 +107,12 @@ void Builder::setOptions(Node& root) {
     Value value;
   };
   std::vector<Old> before;
+  if (Leaf* const node = model_.meshesAreHulls ? extensionOf(*world, "MujocoOptions") : nullptr) {
+    // As in MuJoCo alone.
+    if (scenes) scenes->willChange(*node);
+    before.push_back({node, "allContacts", getProperty(*node, "allContacts")});
+    setProperty(*node, "allContacts", true);
+  }
   for (const Option& o : model_.options) {
     Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
     if (!node) continue;

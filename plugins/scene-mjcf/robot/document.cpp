@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 
 namespace spark::mjcf {
 
@@ -102,8 +104,9 @@ void Document::append(const Element& e, std::vector<Element>& out, int depth) {
       out.push_back(child);
       continue;
     }
-    const std::string name = folder_ + node.attribute("file").value();
-    if (name == folder_) throw child.error("expected an attribute 'file'");
+    const char* const given = node.attribute("file").value();
+    if (!*given) throw child.error("expected an attribute 'file'");
+    const std::string name = std::filesystem::path(folder_ + given).lexically_normal().generic_string();
     // The elements of a file that was loaded before, when this list is made again.
     const auto loaded = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f->name == name; });
     if (depth >= kMaxDepth || loaded == files_.begin()) throw child.error("a file includes itself: '" + name + "'");
@@ -262,7 +265,10 @@ std::optional<std::vector<double>> Attributes::parse(const Element& e, const cha
     if (text[at] == '+') ++at;
     double v = 0;
     const auto [end, failure] = std::from_chars(text.data() + at, text.data() + text.size(), v);
-    if (failure != std::errc() || !std::isfinite(v) || out.size() == most) refuse();
+    // What is next to 0 is 0.
+    if (failure == std::errc::result_out_of_range) v = std::strtod(text.data() + at, nullptr);
+    const bool isNumber = failure == std::errc() || failure == std::errc::result_out_of_range;
+    if (!isNumber || !std::isfinite(v) || out.size() == most) refuse();
     at = static_cast<std::size_t>(end - text.data());
     if (at < text.size() && !std::strchr(" \t\r\n", text[at])) refuse();
     out.push_back(v);
@@ -278,8 +284,10 @@ double Attributes::number(const char* name, double otherwise) {
 
 int Attributes::integer(const char* name, int otherwise) {
   const double v = number(name, otherwise);
-  if (v != std::floor(v) || std::abs(v) > 1e9)
+  if (std::abs(v) > 1e9)
     throw element_.error(fmt::format("expected a whole number for '{}' of <{}>, found {}", name, element_.tag(), v));
+  if (v != std::floor(v))
+    note(fmt::format("'{}' of <{}> is taken without its fraction: expected a whole number", name, element_.tag()));
   return static_cast<int>(v);
 }
 

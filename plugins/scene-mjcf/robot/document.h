@@ -143,6 +143,7 @@ class Attributes {
   std::string word(const char* name, std::initializer_list<const char*> words, const char* otherwise);
   bool flag(const char* name, bool otherwise);
   double number(const char* name, double otherwise);
+  /// One that is not whole loses its fraction, which is named. Throws Error.
   int integer(const char* name, int otherwise);
   /// Between `least` and `most` finite numbers; nullopt where the attribute is not there. Throws Error.
   std::optional<std::vector<double>> numbers(const char* name, std::size_t least, std::size_t most);
@@ -165,6 +166,8 @@ class Attributes {
       for (std::size_t i = 0; i < found->size(); ++i) out[static_cast<int>(i)] = (*found)[i];
     return found.has_value();
   }
+  /// Names what is done with a value.
+  void note(const std::string& what) { unsupported_.add(element_, what); }
   /// Attributes that mean nothing to a simulation.
   void ignore(std::initializer_list<const char*> names) {
     for (const char* name : names) known_.insert(name);

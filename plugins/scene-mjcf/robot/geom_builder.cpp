@@ -51,6 +51,13 @@ void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
       callMethod(collider, "setParams", List{normal.x(), normal.y(), normal.z(), normal.dot(pose.position)});
       return;
     }
+    case Shape::heightField: {
+      const engine::HeightField& f = *s.heightField;
+      setProperty(collider, "size", List{f.width, f.depth, 1.0});
+      setProperty(collider, "columns", f.columns);
+      setProperty(collider, "heights", List(f.heights.begin(), f.heights.end()));
+      break;
+    }
     default:
       setProperty(collider, "vertices", List(s.mesh->vertices.begin(), s.mesh->vertices.end()));
       // A hull is known by its corners.
@@ -82,6 +89,9 @@ void setContact(Node& collider, const Geom& g) {
     setProperty(*numbers, "gap", m.gap);
     setProperty(*numbers, "solmix", m.solmix);
     setProperty(*numbers, "ellipsoid", toList(g.ellipsoid));
+    setProperty(*numbers, "thickness", m.thickness);
+    setProperty(*numbers, "ellipsoidDrag", m.ellipsoidDrag);
+    setProperty(*numbers, "dragCoefficients", toList(m.dragCoefficients));
   }
   setProperty(collider, "contactTypes", g.contactTypes);
   setProperty(collider, "contactAffinities", g.contactAffinities);
@@ -108,6 +118,8 @@ void GeomBuilder::makeGeoms(PlacedBody& p) {
       std::any_of(geoms.begin(), geoms.end(), [](const Geom& g) { return g.visible() && !hasMesh(g.shape); });
   for (const Geom& g : geoms) {
     const bool collides = c_.flags.contact && g.isShape && (g.collides() || inPair(g.name));
+    if (!collides && g.contact.ellipsoidDrag)
+      c_.unsupported.add(g.from, "drag at the ellipsoid of a <geom> that does not collide is not supported");
     if (collides && !c_.attempt(g.from, c_.nodeOf(p), [&] { makeCollider(g, p); })) continue;
     if (g.visible() || !drawn) c_.attempt(g.from, c_.nodeOf(p), [&] { makeVisible(g, p); });
   }
@@ -138,10 +150,13 @@ void GeomBuilder::makeCollider(const Geom& g, PlacedBody& p) {
         g.from, fmt::format("a <{}> is left out: a flat mesh has no convex hull, and collides only where it does not "
                             "move",
                             g.from.tag()));
+  if (g.shape.shape == Shape::heightField && moves)
+    return c_.unsupported.add(
+        g.from, fmt::format("a <{}> is left out: a height field collides only where it does not move", g.from.tag()));
   const ShapeDescription shape = collisionShape(g, moves);
   const char* const kinds[] = {"BoxCollider",      "SphereCollider", "CapsuleCollider",
                                "CylinderCollider", "PlaneCollider",  "",
-                               "TriMeshCollider",  "ConvexCollider"};
+                               "TriMeshCollider",  "ConvexCollider", "HeightFieldCollider"};
   const char* const kind = kinds[static_cast<int>(shape.shape)];
   Node& parent = c_.nodeOf(p);
   Node& collider = *parent.create(kind, c_.names.collider(parent, g.name)).asNode();

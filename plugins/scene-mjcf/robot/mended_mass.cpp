@@ -20,15 +20,21 @@ constexpr double kLeastRadius = 1e-5;   // m, of gyration
 constexpr double kLeastMoment = 1e-14;  // kg m^2
 }  // namespace
 
+void balanceInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported) {
+  const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
+  if (moments.x() + moments.y() >= moments.z() * (1 - 1e-9)) return;
+  unsupported.add(from, what + " with moments of inertia that no body can have gets their mean about each axis");
+  mass.inertia = moments.mean() * Mat3::Identity();
+}
+
 void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported) {
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
   const double least = std::max({kLeastMoment, kLeastRatio * moments.z(), kLeastRadius * kLeastRadius * mass.mass});
   if (!(moments.x() > least)) {
     unsupported.add(from, what + " with moments of inertia that are not above 0 gets those of a sphere of water");
     mass.inertia = physics::sphereMass(mass.mass, std::cbrt(0.75 * mass.mass / (kWater * M_PI))).inertia;
-  } else if (moments.x() + moments.y() < moments.z() * (1 - 1e-9)) {
-    unsupported.add(from, what + " with moments of inertia that no body can have gets their mean about each axis");
-    mass.inertia = moments.mean() * Mat3::Identity();
+  } else {
+    balanceInertia(mass, from, what, unsupported);
   }
 }
 

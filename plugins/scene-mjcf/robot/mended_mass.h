@@ -13,6 +13,9 @@ namespace spark::mjcf {
 /// <inertial>". `mass`: above 0.
 void mendInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported);
 
+/// The second of these alone, for any mass.
+void balanceInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported);
+
 /// Bodies that move and have no mass, or less than 0.1 mg, together with what is fixed to them, get 10 g, which is
 /// named in `unsupported`. `what`: "a <link>". `flawedOnly`: only where a part lacks a mass that the file would give
 /// it.

@@ -26,6 +26,9 @@ struct ContactNumbers {
   std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance
   double margin = 0, gap = 0;                              ///< m
   double solmix = 1;                                       ///< weight of solref and solimp against another surface's
+  double thickness = 1;                                    ///< of a height field, below its lowest point [m]
+  bool ellipsoidDrag = false;                              ///< a medium drags at its ellipsoid
+  std::array<double, 5> dragCoefficients{0.5, 0.25, 1.5, 1, 1};  ///< blunt, slender, angular; Kutta, Magnus
   bool operator==(const ContactNumbers&) const = default;
 };
 
@@ -85,6 +88,7 @@ struct Body {
   Mat3 inertiaAxes = Mat3::Identity();               ///< principal axes, where inertial or geom give them
   bool isFrameOpen = false;                          ///< its frame is where its centre of mass is
   bool hasInertial = false;                          ///< an inertial element says so
+  bool isWeighed = false;                            ///< the compiler counts the masses of some of its geoms
   bool lacksMass = false;                            ///< what would give it some is left out, or gives none
   double gravityCompensation = 0;                    ///< part of the gravity that does not act on it
   std::vector<Joint> joints;
@@ -242,10 +246,14 @@ struct Model {
 /// Vertices and triangles of a mesh file: `read` reads it. Throws Error.
 using ReadMesh = std::function<engine::Mesh(const std::string& file)>;
 
+/// The heights of a file, whose size is not set: `read` reads it. Throws Error.
+using ReadHeights = std::function<engine::HeightField(const std::string& file)>;
+
 /// Limits of a model: bodies, elements with attributes, and numbers of all meshes.
 inline constexpr std::size_t kMaxBodies = 20'000, kMaxElements = 200'000, kMaxMeshNumbers = 30'000'000;
 
 /// Reads a model. What it does not take is named in `unsupported`. Throws Error with file:line:column.
-Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported);
+Model readModel(Document& document, const ReadMesh& readMesh, Unsupported& unsupported,
+                const ReadHeights& readHeights = {});
 
 }  // namespace spark::mjcf

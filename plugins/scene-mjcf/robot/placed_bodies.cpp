@@ -9,6 +9,9 @@
 namespace spark::mjcf {
 
 PlacedBodies::PlacedBodies(const Model& model, const Pose& root) : root_(root), bodies_(model.bodies.size()) {
+  for (const Equality& x : model.equalities)
+    for (const std::string& name : {x.first, x.second})
+      if (!name.empty()) held_.insert(name);
   bodies_.front().body = &model.bodies.front();
   bodies_.front().world = root;
   for (std::size_t i = 1; i < bodies_.size(); ++i) place(i, model.bodies[i]);
@@ -36,7 +39,7 @@ void PlacedBodies::place(std::size_t index, const Body& b) {
   const Mat3& r = p.inCarrier.rotation;
   const engine::Mass part{b.mass.mass, p.inCarrier.position + r * b.mass.center, r * b.mass.inertia * r.transpose()};
   carrier.mass = physics::together(carrier.mass, part);
-  if (&p == &carrier || part.mass > 0 || !b.geoms.empty()) {
+  if (&p == &carrier || part.mass > 0 || !b.geoms.empty() || held_.contains(b.name)) {
     p.part = static_cast<int>(carrier.parts.size());
     carrier.parts.push_back({part.mass, part.center, part.inertia, r * b.inertiaAxes});
   }

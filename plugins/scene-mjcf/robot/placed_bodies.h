@@ -46,6 +46,7 @@ class PlacedBodies {
   Pose root_;
   std::vector<PlacedBody> bodies_;  ///< as in the model
   std::map<std::string, PlacedBody*, std::less<>> byName_;
+  std::set<std::string, std::less<>> held_;  ///< by equalities, which depend on where a massless body is
 };
 
 }  // namespace spark::mjcf

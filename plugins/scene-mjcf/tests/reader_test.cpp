@@ -105,10 +105,35 @@ TEST_CASE("errors have the position, what was expected, and what was found") {
       {"<mujoco><worldbody><body pos='1 2 nan'/></worldbody></mujoco>",
        "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
-      {"<mujoco><compiler eulerseq='xyw'/></mujoco>",
-       "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xyw'"},
+      {"<mujoco><compiler eulerseq='xy'/></mujoco>",
+       "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xy'"},
+      {"<mujoco><compiler eulerseq='xyw'/><worldbody><body euler='1 2 3'/></worldbody></mujoco>",
+       "a.xml:1:46: expected an 'eulerseq' of x y z X Y Z in <compiler>, found 'xyw'"},
   };
   for (const auto& [text, message] : cases) CHECK_THAT(failure(text), Catch::StartsWith(message));
+}
+
+TEST_CASE("a value that MuJoCo takes does not cost the model; what is made of it is named") {
+  const std::pair<const char*, const char*> cases[] = {
+      {"<body quat='0 0 0 0'/>", "a.xml:1:20: a 'quat' of 0 in <body> is taken as no rotation"},
+      {"<geom size='1' group='1.5'/>", "'group' of <geom> is taken without its fraction: expected a whole number"},
+      {"<body><joint type='ball' limited='true' range='0 0'/><geom size='1'/></body>",
+       "a ball <joint> that is limited to 0 has no limit"},
+      {"<body><joint/><inertial pos='0 0 0' mass='1' diaginertia='1 0.1 0.1'/></body>",
+       "the <inertial> of a <body> with moments of inertia that no body can have gets their mean about each axis"},
+      {"<body><inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/></body>", ""},
+      {"<body><joint damping='1e-400'/><geom size='1'/></body>", ""},
+      {"<body quat='0 0 0 2'/>", ""},
+  };
+  for (const auto& [content, message] : cases) {
+    const std::string messages = named(world(content));
+    INFO(content << messages);
+    CHECK((*message ? messages.find(message) != std::string::npos : messages.empty()));
+  }
+  CHECK(Read("<mujoco><compiler eulerseq='xyw'/></mujoco>").messages().empty());
+  CHECK(Read(world("<body><joint/><inertial pos='0 0 0' mass='1' diaginertia='1 0.1 0.1'/></body>"))
+            .body(1)
+            .mass.inertia.isApprox(0.4 * Mat3::Identity()));
 }
 
 TEST_CASE("a part that is bad is left out, and named with its place, what was expected, and what was found") {
@@ -291,7 +316,7 @@ TEST_CASE("a pair names geoms that are only seen otherwise") {
   const Read r = read(mesh + "<geom name='b' size='1'/>");
   CHECK(r.body(0).geoms.size() == 2);
   CHECK(r.model.unsupportedGeoms.empty());
-  CHECK(read(mesh + "<geom name='b' type='hfield' hfield='h'/>").model.unsupportedGeoms.contains("b"));
+  CHECK(read(mesh + "<geom name='b' type='sdf'/>").model.unsupportedGeoms.contains("b"));
 }
 
 TEST_CASE("elements and attributes that MJCF does not have are named, wherever they are") {
