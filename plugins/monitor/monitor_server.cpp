@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "api/command_check.h"
 #include "log_player.h"
 #include "monitor_log.h"
 #include "script_item.h"
@@ -73,14 +74,16 @@ std::string MonitorServer::queueCommands(IParser* parser, std::string_view from,
     return dropMessage(from);
   }
   if (result.message.empty()) {
-    std::string unknown = describeUnknown(before);
+    const std::string unknown = describeUnknown(before);
+    std::string mistake = unknown.empty() ? describeMistake(before) : unknown;
     // The error is only logged and returned to the caller: the protocol has no replies, and monitors could not parse
     // one.
-    if (!unknown.empty() && (!unknownLoggedAt_ || last_.cycle - *unknownLoggedAt_ >= kLogInterval)) {
-      unknownLoggedAt_ = last_.cycle;
-      kernel().log().info("{}: from {}: {}", path(), from, unknown);
+    auto& loggedAt = unknown.empty() ? mistakeLoggedAt_ : unknownLoggedAt_;
+    if (!mistake.empty() && (!loggedAt || last_.cycle - *loggedAt >= kLogInterval)) {
+      loggedAt = last_.cycle;
+      kernel().log().info("{}: from {}: {}", path(), from, mistake);
     }
-    return unknown;
+    return mistake;
   }
   kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column,
                        result.message);
@@ -95,6 +98,19 @@ std::string MonitorServer::describeUnknown(std::uint32_t first) const {
     if (std::find(knownCommands_.begin(), knownCommands_.end(), name) == knownCommands_.end())
       return fmt::format("there is no command '{}' here.{}", name.substr(0, 40),
                          didYouMean(name.substr(0, 40), knownCommands_));
+  }
+  return {};
+}
+
+/// The first command from there on that its trainer finds a mistake in.
+std::string MonitorServer::describeMistake(std::uint32_t first) const {
+  for (const Element command : commands_) {
+    if (command.index() < first || !command.isList()) continue;
+    for (const Found<ITrainer>& trainer : trainers_) {
+      const auto check = trainer.leaf->as<ICommandCheck>();
+      const std::string why = check ? check->check(command) : std::string();
+      if (!why.empty()) return fmt::format("{}: {}", command.head().substr(0, 40), why);
+    }
   }
   return {};
 }

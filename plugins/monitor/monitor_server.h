@@ -76,6 +76,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   /// The first unknown command from token `first` of `commands_` on, with the nearest known one, as a sentence; "" if
   /// all are known.
   std::string describeUnknown(std::uint32_t first) const;
+  std::string describeMistake(std::uint32_t first) const;
   /// As command(), for scripts and sparkctl. Throws Error if a command will not be executed.
   void commandOrThrow(const std::string& text);
 
@@ -97,7 +98,7 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<std::unique_ptr<MonitorClient>> clients_;  ///< in order of arrival
   Predicates commands_;                                  ///< wait for the next cycle that executes commands
   std::int64_t dropped_ = 0;                             ///< messages since the last log line about them
-  std::optional<std::int64_t> droppedLoggedAt_, unknownLoggedAt_;  ///< cycle of the last line
+  std::optional<std::int64_t> droppedLoggedAt_, unknownLoggedAt_, mistakeLoggedAt_;  ///< cycle of the last line
 
   // Used by publish() and sendTo(); members, so that they keep their capacity. Indices refer to the clients of
   // sendTo().

@@ -1,8 +1,11 @@
 #include "trainer_command_parser.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <optional>
+
+#include "spark/error.h"
 
 namespace spark {
 
@@ -62,53 +65,115 @@ Side sideIn(const Element& command) {
 
 const char* const kNoSuchPlayer = "no such player";
 
+constexpr std::size_t kMaxQuote = 40;  ///< bytes of a command that a message repeats
+
+/// The arguments that `usage` names: "(pos x y z)" is {pos, 3}; without brackets, as in "(time seconds)", {"", 1}.
+std::vector<std::pair<std::string_view, std::size_t>> partsOf(std::string_view usage) {
+  std::vector<std::pair<std::string_view, std::size_t>> parts;
+  for (std::size_t at = usage.find('(', 1); at != usage.npos; at = usage.find('(', at + 1)) {
+    const std::string_view part = usage.substr(at + 1, usage.find(')', at) - at - 1);
+    parts.emplace_back(part.substr(0, part.find(' ')), std::count(part.begin(), part.end(), ' '));
+  }
+  return parts;
+}
+
+/// What is wrong with a part of a command that has an effect all the same: it is ignored. "" if nothing is.
+std::string wrongPart(const Element& command, std::string_view usage) {
+  const auto parts = partsOf(usage);
+  const std::size_t words = parts.empty() ? std::count(usage.begin(), usage.end(), ' ') : 0;
+  if (parts.empty() && command.size() != words + 1)
+    return fmt::format("expected {} arguments, found {}", words, command.size() - 1);
+  if (parts.empty()) return {};
+  for (std::size_t i = 1; i < command.size(); ++i) {
+    const Element part = command.at(i);
+    const std::string_view name = (part.isList() ? part.head() : part.text()).substr(0, kMaxQuote);
+    const auto known = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == name; });
+    if (!part.isList() || known == parts.end()) return fmt::format("found '{}', which is ignored", name);
+    double numbers[4];
+    const auto count = static_cast<int>(known->second);
+    if (part.size() != known->second + 1 || (name != "team" && !readList(part, numbers, count)))
+      return fmt::format("expected {} numbers of at most {} after {}, found something else, which is ignored", count,
+                         kMaxNumber, name);
+  }
+  return {};
+}
+
 }  // namespace
 
-const std::vector<std::pair<std::string_view, TrainerCommandParser::Run>>& TrainerCommandParser::table() {
-  static const std::vector<std::pair<std::string_view, Run>> kCommands = {
-      {"playMode", &TrainerCommandParser::playMode}, {"kickOff", &TrainerCommandParser::kickOff},
-      {"dropBall", &TrainerCommandParser::dropBall}, {"ball", &TrainerCommandParser::ball},
-      {"agent", &TrainerCommandParser::agent},       {"select", &TrainerCommandParser::select},
-      {"kill", &TrainerCommandParser::kill},         {"repos", &TrainerCommandParser::repos},
-      {"time", &TrainerCommandParser::time},         {"score", &TrainerCommandParser::score}};
+const std::vector<TrainerCommandParser::Command>& TrainerCommandParser::table() {
+  using T = TrainerCommandParser;
+  static const std::vector<Command> kCommands = {
+      {"playMode", "(playMode <mode>)", &T::playMode},
+      {"kickOff", "(kickOff Left|Right|None)", &T::kickOff},
+      {"dropBall", "(dropBall)", &T::dropBall},
+      {"ball", "(ball (pos x y z) (vel x y z))", &T::ball},
+      {"agent",
+       "(agent (unum n) (team Left|Right) (pos x y z) (move x y z deg) (rot x y z) (battery v) (temperature v))",
+       &T::agent},
+      {"select", "(select (unum n) (team Left|Right))", &T::select},
+      {"kill", "(kill (unum n) (team Left|Right))", &T::kill},
+      {"repos", "(repos (unum n) (team Left|Right))", &T::repos},
+      {"time", "(time seconds)", &T::time},
+      {"score", "(score (left n) (right n))", &T::score}};
   return kCommands;
+}
+
+const TrainerCommandParser::Command* TrainerCommandParser::find(const Element& command) {
+  for (const Command& c : table())
+    if (command.head() == c.name) return &c;
+  return nullptr;
 }
 
 std::vector<std::string> TrainerCommandParser::commands() const {
   std::vector<std::string> names;
-  for (const auto& [name, run] : table()) names.emplace_back(name);
+  for (const Command& c : table()) names.emplace_back(c.name);
   return names;
 }
 
+std::string TrainerCommandParser::run(const Command& command, const Element& c) {
+  match_.refresh(*this);
+  if (!match_.game() || !match_.game()->pitch().ready()) return "there is no match";
+  return (this->*command.run)(c);
+}
+
 bool TrainerCommandParser::command(const Element& c, std::string& why) {
-  for (const auto& [name, run] : table()) {
-    if (c.head() != name) continue;
-    match_.refresh(*this);
-    if (!match_.game() || !match_.game()->pitch().ready())
-      why = "there is no match";
-    else
-      why = (this->*run)(c);
-    return true;
-  }
-  return false;
+  const Command* const known = find(c);
+  if (known) why = run(*known, c);
+  return known;
+}
+
+std::string TrainerCommandParser::check(const Element& c) {
+  const Command* const known = find(c);
+  if (!known) return {};
+  acts_ = false;
+  std::string why = run(*known, c);
+  acts_ = true;
+  if (why.empty()) why = wrongPart(c, known->usage);
+  return why.empty() ? why : fmt::format("{}{} The command is {}", why, why.back() == '?' ? "" : ".", known->usage);
 }
 
 std::string TrainerCommandParser::playMode(const Element& c) {
   soccer::PlayMode mode;
-  if (!c.at(1) || !soccer::playModeFromName(c.at(1).text(), mode)) return "no such play mode";
-  match_.game()->setMode(mode);
+  const std::string_view name = c.at(1) ? c.at(1).text().substr(0, kMaxQuote) : std::string_view();
+  if (!soccer::playModeFromName(name, mode)) {
+    static const std::vector<std::string> kNames(soccer::kPlayModeNames.begin(), soccer::kPlayModeNames.end());
+    const std::string guess = didYouMean(name, kNames);
+    return fmt::format("expected a play mode, found '{}'{}{}", name, guess.empty() ? "" : ".", guess);
+  }
+  if (acts_) match_.game()->setMode(mode);
   return {};
 }
 
 std::string TrainerCommandParser::kickOff(const Element& c) {
   const std::string_view side = c.at(1) ? c.at(1).text() : std::string_view();
-  if (side != "Left" && side != "Right" && side != "None") return "expected Left, Right or None";
-  match_.game()->kickOff(soccer::sideFromTrainer(side));
+  if (side != "Left" && side != "Right" && side != "None")
+    return fmt::format("expected Left, Right or None, found '{}'", side.substr(0, kMaxQuote));
+  if (acts_) match_.game()->kickOff(soccer::sideFromTrainer(side));
   return {};
 }
 
 std::string TrainerCommandParser::dropBall(const Element&) {
-  if (match_.referee()) match_.referee()->dropBall(match_.game()->pitch().ballPosition());
+  if (acts_ && match_.referee()) match_.referee()->dropBall(match_.game()->pitch().ballPosition());
   return {};
 }
 
@@ -118,6 +183,7 @@ std::string TrainerCommandParser::ball(const Element& c) {
   double p[3], v[3];
   const bool place = readNamed(c, "pos", p, 3), push = readNamed(c, "vel", v, 3);
   if (!place && !push) return "expected (pos x y z) or (vel x y z)";
+  if (!acts_) return {};
   ball->enable();
   if (place) ball->setPosition(Vec3(p[0], p[1], p[2]));
   if (push) {
@@ -145,7 +211,7 @@ std::string TrainerCommandParser::agent(const Element& c) {
     // Move the selected players away from where they are, towards their own end.
     const double distance = pitch.settings().freeKickMoveDist;
     for (const Player& p : pitch.players()) {
-      if (!p.state->selected() || !p.torso) continue;
+      if (!acts_ || !p.state->selected() || !p.torso) continue;
       const double d = direction(p.side());
       Vec3 target = p.position();
       if (std::abs(target.x() - d * distance) <= pitch.settings().fieldLength / 2)
@@ -163,7 +229,7 @@ std::string TrainerCommandParser::agent(const Element& c) {
   const auto given = [&](std::string_view name, int count) {
     const bool yes = readNamed(c, name, v, count);
     done |= yes;
-    return yes;
+    return yes && acts_;
   };
   if (given("move", 4)) p->moveTo(Vec3(v[0], v[1], v[2]), degToRad(v[3]));
   if (given("pos", 3)) p->moveTo(Vec3(v[0], v[1], v[2]));
@@ -184,7 +250,7 @@ std::string TrainerCommandParser::select(const Element& c) {
     wanted = now && now != &players.back() ? now + 1 : &players.front();
   }
   for (const Player& p : players)
-    if (p.state->selected() != (&p == wanted)) p.state->select(&p == wanted);
+    if (acts_ && p.state->selected() != (&p == wanted)) p.state->select(&p == wanted);
   return {};
 }
 
@@ -192,21 +258,21 @@ std::string TrainerCommandParser::kill(const Element& c) {
   const Player* p = isBare(c) ? selectedPlayer() : namedPlayer(c);
   if (!p) return kNoSuchPlayer;
   // Also close its connection. The installed base leaves it open and repeats the last message forever.
-  match_.game()->pitch().gameControl()->removeAgent(*p->agent, true);
+  if (acts_) match_.game()->pitch().gameControl()->removeAgent(*p->agent, true);
   return {};
 }
 
 std::string TrainerCommandParser::repos(const Element& c) {
   const Player* p = isBare(c) ? selectedPlayer() : namedPlayer(c);
   if (!p || !p->torso || p->side() == Side::none) return kNoSuchPlayer;
-  match_.game()->pitch().moveOffField(*p, 1.0);
+  if (acts_) match_.game()->pitch().moveOffField(*p, 1.0);
   return {};
 }
 
 std::string TrainerCommandParser::time(const Element& c) {
   double t;
   if (!readList(c, &t, 1) || t < 0) return fmt::format("expected a time of 0 to {} s", kMaxNumber);
-  match_.game()->setTime(t);
+  if (acts_) match_.game()->setTime(t);
   return {};
 }
 
@@ -216,7 +282,7 @@ std::string TrainerCommandParser::score(const Element& c) {
                                    : std::pair<std::optional<int>, std::optional<int>>();
   if (!goals.first || !goals.second || *goals.first < 0 || *goals.second < 0)
     return "expected (left a)(right b), both 0 or more";
-  match_.game()->setScores(*goals.first, *goals.second);
+  if (acts_) match_.game()->setScores(*goals.first, *goals.second);
   return {};
 }
 

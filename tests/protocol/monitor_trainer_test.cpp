@@ -222,7 +222,7 @@ TEST_CASE("(reqfullstate) requests a full message, (init) and (getAck) do nothin
   CHECK(t.s.over());
 }
 
-TEST_CASE("Malformed or extreme commands change nothing, and only an unknown command is logged") {
+TEST_CASE("Malformed or extreme commands change nothing, and the first of them and an unknown one are logged") {
   Training t;
   t.s.trainer("(select (unum 2)(team Right))" + Stadium::ballTo(1, 2));
   t.s.run(100);
@@ -306,5 +306,6 @@ TEST_CASE("Malformed or extreme commands change nothing, and only an unknown com
   CHECK(t.state("battery") == battery);
   const std::string log = t.s.log().substr(said);
   CHECK_THAT(log, Catch::Contains("there is no command 'nosuchcommand' here"));
-  CHECK(std::count(log.begin(), log.end(), '\n') == 1);
+  CHECK_THAT(log, Catch::Contains(": ball: expected (pos x y z) or (vel x y z)"));
+  CHECK(std::count(log.begin(), log.end(), '\n') == 2);
 }

@@ -372,8 +372,8 @@ TEST_CASE("trainers move ball and players and set modes and times, and invalid c
   CHECK(h.trainer("(repos (unum 1)(team Left))").empty());
   CHECK(h.bodyOf(1).state().position.isApprox(Vec3(-3.6, -34.5, 1.0), 0.01));
   CHECK(h.trainer("(select (unum -1))").empty());
-  CHECK(h.trainer("(playMode Kickoff)") == "no such play mode");
-  CHECK(h.trainer("(kickOff left)") == "expected Left, Right or None");
+  CHECK(h.trainer("(playMode Kickoff)") == "expected a play mode, found 'Kickoff'");
+  CHECK(h.trainer("(kickOff left)") == "expected Left, Right or None, found 'left'");
   CHECK(h.trainer("(ball (pos 1 nan 0))") == "expected (pos x y z) or (vel x y z)");
   CHECK(h.trainer("(agent (unum 9)(team Left)(pos 0 0 0))") == "no such player");
   CHECK(h.trainer("(score (left 1))") == "expected (left a)(right b), both 0 or more");
