@@ -81,7 +81,7 @@ class KickEffector : public Effector, public ISceneCalls {
       else if (!ball)
         refuse(1, [] { return "expected a ball, found none"; });
       else if (stepsLeft_ > 0)
-        refuse(2, [&] { return fmt::format("expected no kick under way, found one for {} more steps", stepsLeft_); });
+        miss(*player, "a kick is under way");
       else
         start(*player, *ball);
     }
@@ -96,13 +96,20 @@ class KickEffector : public Effector, public ISceneCalls {
     if (auto* state = match_.ball()) state->kickedBy(*player->agent);
   }
 
+  /// Notes a kick that comes to nothing in play. This is no mistake: a player cannot know it before.
+  void miss(const soccer::Player& player, const char* why) {
+    if (Log& log = kernel().log(); log.enabled(Level::debug))
+      log.debug("agent {}: kick: {}", player.agent->number(), why);
+  }
+
   /// Starts a kick if the player is on the ground and near enough to the ball.
   void start(const soccer::Player& player, const IRigidBody& ball) {
     const SoccerSettings& s = *match_.settings();
     const Vec3 from = player.position(), offset = ball.state().position - from;
-    if (from.z() > s.agentRadius + 0.01)
-      return refuse(3, [] { return "expected a player on the ground, found it in the air"; });
-    if (const double reach = s.agentRadius + s.ballRadius + margin_, distance = offset.norm(); distance > reach)
+    if (from.z() > s.agentRadius + 0.01) return miss(player, "the player is in the air");
+    const double reach = s.agentRadius + s.ballRadius + margin_, distance = offset.norm();
+    if (distance > reach && distance < reach + kNear) return miss(player, "the ball is just out of reach");
+    if (distance > reach)
       return refuse(
           4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach, distance); });
     const double theta = std::atan2(offset.y(), offset.x()) + noise(sigmaTheta_);
@@ -124,6 +131,8 @@ class KickEffector : public Effector, public ISceneCalls {
 
   MatchLookup match_;
   RandomStream random_{*this, "kick"};
+  /// A kick that misses by less is no mistake: a fast ball covers this while the command is under way [m].
+  static constexpr double kNear = 1;
   double margin_ = 0.04, forceFactor_ = 4.0, torqueFactor_ = 0.1, maxPower_ = 100, minAngle_ = 0, maxAngle_ = 50;
   double sigmaForce_ = 0, sigmaTheta_ = 0, sigmaPhiEnd_ = 0.9, sigmaPhiMid_ = 4.5;
   int steps_ = 10, stepsLeft_ = 0;

@@ -98,6 +98,19 @@ TEST_CASE("a kick, catch or pass that is not possible is one line in the log", "
   CHECK(h.lines(1, "catch: expected the ball within 2.33 m, found it at 5") == 1);
 }
 
+TEST_CASE("a kick that just misses the ball, or comes while one is under way, is play and no mistake", "[soccer]") {
+  Mistakes h;
+  h.setMode("PlayOn");
+  h.text.clear();
+  h.placeBall(10, 0);
+  h.placeAgent(2, 10 - 0.6, 0);
+  h.act(h.player, "(kick 0 10)");
+  CHECK(getProperty(h.at("/usr/scene/AgentAspect2/body/KickEffector"), "stepsLeft").toInteger() == 0);
+  h.placeAgent(2, 10 - 0.34, 0);
+  for (int i = 0; i < 3; ++i) h.act(h.player, "(kick 0 10)");
+  CHECK(h.lines(2, "") == 0);
+}
+
 TEST_CASE("a pass that is refused is one line in the log, for each reason", "[soccer]") {
   Mistakes h;
   // The robots of 2004 have no pass effector.

@@ -1,7 +1,7 @@
 -- row: 18
 -- input: two opponents kick, or touch, the ball in the same cycle, and it leaves the field: one is nearer, or both are as near
 -- right: the nearer one touched it last; of two that are as near each about half of the times, whichever joined first
--- args: --duration 60
+-- args: --agent-port 0 --monitor-port 0 --web-port 0 --duration 60
 include "soccer-sphere.lua"
 include "../lib/judge.lua"
 include "../lib/soccer.lua"

@@ -1,7 +1,7 @@
 -- row: 16
 -- input: a ball leaves the field near a corner, or near a post, at up to 40 m/s: past which line, or between the posts?
 -- right: the line that the whole ball crossed first decides; a goal only between the posts and below the bar
--- args: --duration 60
+-- args: --agent-port 0 --monitor-port 0 --web-port 0 --duration 60
 include "soccer-sphere.lua"
 include "../lib/judge.lua"
 include "../lib/soccer.lua"
