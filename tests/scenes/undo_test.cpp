@@ -98,7 +98,7 @@ TEST_CASE("the text of a file says its language, and its name only where the tex
   CHECK(says("model.xml", "#VRML_SIM R2023b utf8\nRobot { }").empty());
   CHECK_THAT(says("robot.urdf", "<!-- no more"), Catch::StartsWith("robot.urdf:1:"));
   CHECK_THAT(says("world.wbt", "<html/>"), Catch::StartsWith("world.wbt:1:1: "));
-  CHECK_THAT(says("thing.proto", "PROTO A"), Catch::StartsWith("thing.proto:1:1: "));
+  CHECK_THAT(says("thing.proto", "PROTO A"), Catch::StartsWith("thing.proto:1:8: "));
   CHECK_THAT(says("scene.rsg", "RSG 0 1"), Catch::StartsWith("scene.rsg:1:"));
   CHECK_THAT(says("model.mjcf", "<html/>"), Catch::StartsWith("model.mjcf:1:1: expected the element <mujoco>"));
   CHECK_THAT(says("model.txt", "<html/>"), Catch::Contains("neither its beginning nor its name"));

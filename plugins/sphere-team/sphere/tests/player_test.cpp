@@ -9,8 +9,9 @@ using namespace spark;
 
 namespace {
 
-/// The percepts of a player at (x, y) without noise, in the team's own frame.
+/// The percepts of a player at (x, y) without noise, in the team's own frame: the marks of its own side are behind.
 struct World {
+  bool right = false;  ///< the player's team defends the right goal
   double now = 1, x = -5, y = 0, ballX = 0, ballY = 0;
   std::string mode = "PlayOn", announce, others;
 
@@ -24,10 +25,12 @@ struct World {
     others += "(P (team " + team + ") (id " + std::to_string(unum) + ") " + pol(px - x, py - y) + ")";
   }
   std::string text() const {
+    const double own = right ? 52 : -52;  // where the marks of the left goal are
     return "(time (now " + std::to_string(now) + "))(GS " + announce + "(sl 2) (sr 1) (t 1) (pm " + mode + "))(See " +
-           mark("F1L", -52, 34) + mark("F2L", -52, -34) + mark("F1R", 52, 34) + mark("F2R", 52, -34) +
-           mark("G1L", -52, 3.66) + mark("G2L", -52, -3.66) + mark("G1R", 52, 3.66) + mark("G2R", 52, -3.66) +
-           mark("B", ballX, ballY) + others + ")";
+           mark("F1L", own, -own * 34 / 52) + mark("F2L", own, own * 34 / 52) + mark("F1R", -own, -own * 34 / 52) +
+           mark("F2R", -own, own * 34 / 52) + mark("G1L", own, -own * 3.66 / 52) + mark("G2L", own, own * 3.66 / 52) +
+           mark("G1R", -own, -own * 3.66 / 52) + mark("G2R", -own, own * 3.66 / 52) + mark("B", ballX, ballY) + others +
+           ")";
   }
 };
 
@@ -50,8 +53,9 @@ double argument(const std::string& actions, std::string_view name, std::size_t i
 }
 
 /// A player that has received its side.
-SpherePlayer playing(int unum, World& world, const char* side = "left") {
+SpherePlayer playing(int unum, World& world, const std::string& side = "left") {
   SpherePlayer player("A", unum);
+  world.right = side == "right";
   world.announce = "(unum " + std::to_string(unum) + ") (team " + side + ") ";
   think(player, world);
   world.announce.clear();
@@ -79,7 +83,7 @@ TEST_CASE("a player requests its robot, then its number and team, and repeats th
 
 TEST_CASE("a player knows the score from its own side", "[sphere-team]") {
   World w;
-  SpherePlayer left = playing(3, w), right = playing(3, w, "right");
+  const SpherePlayer left = playing(3, w), right = playing(3, w, "right");
   CHECK(left.ownScore() == 2);
   CHECK(left.otherScore() == 1);
   CHECK(right.ownScore() == 1);
