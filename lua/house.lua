@@ -126,12 +126,14 @@ function agentPort(name, port, parser, framing, socket)
   return node
 end
 
---- Game control, the timing of agents and the agent port. `parser`: class of the agents' language.
+--- Game control, the timing of agents and the agent port. `parser`: class of the agents' language; `decimals`: of the
+--- numbers that agents get; -1, the default: as many as it takes to read back the same number.
 function agents(t)
   languages()
   plugin "gamecontrol"
   local server = new("GameControl", "/sys/server/gamecontrol")
-  new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
+  local language = new(t.parser or "SexpParser", "/sys/server/gamecontrol/parser")
+  if language.class == "SexpParser" or language.class == "JsonParser" then language.decimals = t.decimals or -1 end
   local timing = new("AgentTiming", "/sys/server/gamecontrol/timing")
   timing.senseLatency = option{ name = "senseLatency", default = timing.senseLatency,
                                 doc = "Cycles from sensing to the arrival of percepts." }
@@ -155,7 +157,7 @@ function spades(t)
                            doc = "Think time: FixedThinkTime, or measured: CpuThinkTime, InstructionThinkTime." }
   local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
   local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
-  local token    = option{ name = "commToken", default = "", doc = "What they must know; empty: nothing." }
+  local token    = option{ name = "commToken", default = "", secret = true, doc = "What they must know; empty: nothing." }
   local servers  = option{ name = "commServers", default = 0, doc = "How many of them the start waits for." }
   languages()
   plugin "gamecontrol"
@@ -209,7 +211,7 @@ function web()
   local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
   local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
   local address = option{ name = "webAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
-  local token  = option{ name = "webToken", default = "", doc = "What makes a viewer a referee, at least 16 characters; empty: made up and printed." }
+  local token  = option{ name = "webToken", default = "", secret = true, doc = "What makes a viewer a referee, at least 16 characters; empty: made up and printed." }
   local logs   = option{ name = "webLogs", default = "", doc = "Folder of recorded games that viewers may play; empty: none." }
   if host.alone or not wanted then return end
   plugin "monitor-web"
@@ -241,7 +243,7 @@ end
 function remote()
   local address = option{ name = "remoteAddress", default = "",
                           doc = "Where other hosts mount this one's tree: host:port or a Unix socket; empty: nowhere." }
-  local token   = option{ name = "remoteToken", default = "",
+  local token   = option{ name = "remoteToken", default = "", secret = true,
                           doc = "What they must know, at least 16 characters; empty: made up and printed." }
   local expect  = option{ name = "remoteExpect", default = 0, doc = "How many of them the first cycle waits for." }
   if host.alone or address == "" then return end

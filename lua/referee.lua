@@ -10,7 +10,7 @@ include "house.lua"
 include "shot_clock.lua"
 
 local at    = option{ name = "match", default = "127.0.0.1:3400", doc = "Where the host of the match listens: host:port or a Unix socket." }
-local token = option{ name = "token", default = "", doc = "The token that it printed." }
+local token = option{ name = "token", default = "", secret = true, doc = "The token that it printed." }
 
 simulation()
 local match = mount{ "/usr/match", address = at, token = token, name = "referee" }

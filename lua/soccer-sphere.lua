@@ -24,7 +24,7 @@ scene()                                 -- /sys/server/scene, and an empty scene
 materials()                             -- /sys/server/material: names for viewers
 physics(engineOption())                 -- /sys/server/physics with an engine; a world and a space in the scene
 simulation()                            -- /sys/server/simulation: the run loop
-agents{ parser = parser }               -- /sys/server/gamecontrol with a parser, and a TCP port
+agents{ parser = parser, decimals = 2 } -- /sys/server/gamecontrol with a parser, and a TCP port
 monitors{ encoder = encoder }           -- /sys/server/monitor with an encoder, and a TCP port
 web()                                   -- /sys/server/web: the page on which browsers show the match
 control()                               -- /sys/server/control: the socket of sparkctl

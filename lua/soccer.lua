@@ -32,7 +32,7 @@ scene()
 materials()
 physics(engine, { exactReplay = exact })
 simulation()
-agents{ parser = parser }
+agents{ parser = parser, decimals = 2 }
 monitors{ encoder = encoder }
 web()
 control()

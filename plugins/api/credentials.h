@@ -15,8 +15,24 @@
 
 #include "spark/abi/api/credentials.h"
 #include "spark/error.h"
+#include "spark/value.h"
 
 namespace spark {
+
+/// The type of a parameter that is a secret, such as a token: recordings leave out its value, and as a property or a
+/// result it is "".
+struct Secret {
+  std::string text;
+};
+
+template <>
+struct Convert<Secret> {
+  static constexpr int kScalars = 1;
+  static constexpr const char* kName = "secret";
+  static std::string typeName() { return kName; }
+  static Secret from(Args& args) { return {Convert<std::string>::from(args)}; }
+  static Value to(const Secret&) { return ""; }
+};
 
 /// A new token: 128 random bits of the system as 32 hexadecimal digits. Throws Error if the system has none.
 inline std::string makeToken() {

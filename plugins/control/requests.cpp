@@ -9,6 +9,8 @@
 #include "api/inputs.h"
 #include "api/phases.h"
 #include "spark/error.h"
+#include "spark/other_code.h"
+#include "spark/output_file.h"
 
 namespace spark::control {
 
@@ -163,7 +165,16 @@ Json plugins(Kernel& kernel) {
 }
 
 Json load(Kernel& kernel, const Json& request) {
-  const Plugin& p = kernel.plugins().use(textOf(request, "name"));
+  const std::string& name = textOf(request, "name");
+  if (const Plugin& p = kernel.plugins().use(name); hasOtherCode(p)) {
+    const std::string file = p.file();
+    try {
+      kernel.plugins().unload(name);
+    } catch (const Error& e) {
+      throw Error(fmt::format("plugin '{}' runs code of before: {} is newer", name, file), e);
+    }
+  }
+  const Plugin& p = kernel.plugins().use(name);
   std::string text = fmt::format("{} {} from {}:", p.name(), p.version(), p.file());
   for (const std::string& c : p.classes()) text += " " + c;
   return {{"ok", true}, {"text", text}};
@@ -223,9 +234,11 @@ std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Wa
     throw Error(fmt::format(
         "'{}' changes the match, which only the referee may: log in with the token that the host printed at its start",
         what));
-  if (auto* tape = kernel.root().find<IInputTape>();
-      tape && changesSomething(what) && !tape->put({.kind = Input::Kind::request, .text = line}))
+  auto* const tape = kernel.root().find<IInputTape>();
+  if (tape && changesSomething(what) && !tape->put({.kind = Input::Kind::request, .text = line}))
     throw Error("a recording is played: nothing can be changed in it");
+  std::optional<outputs::ByUser> byUser;  // a request that changes something is the user's own, unless it is played
+  if (changesSomething(what) && !(tape && tape->playing())) byUser.emplace();
   if (what == "tree") return dump(tree(kernel, request, mayChange ? kMaxNodes : kMaxNodesForSpectators));
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));

@@ -5,6 +5,7 @@
 
 #include "file_server.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 #include "spark/random.h"
 
 namespace fs = std::filesystem;
@@ -66,6 +67,7 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
     throw Error(fmt::format("resource '{}' is too large: {} bytes, at most {} are allowed ({}.maxBytes)", resource,
                             size, maxBytes_, path()));
 
+  outputs::keep(file->string());
   std::ifstream in(*file, std::ios::binary);
   std::string content(size, '\0');
   if (!in || !in.read(content.data(), static_cast<std::streamsize>(size)))

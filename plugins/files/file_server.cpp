@@ -54,9 +54,13 @@ void FileServer::describe(Description<FileServer>& d) {
 
 template <class F>
 void FileServer::forEach(F visit) const {
-  for (const auto& child : children())
-    if (auto system = child->as<IFileSystem>())
-      if (visit(*system)) return;
+  const Node* const ofProgram = kernel().root().find<Node>(kOfProgram);
+  for (const Node* const node : {ofProgram, static_cast<const Node*>(this)}) {
+    if (!node || (node == this && node == ofProgram)) continue;
+    for (const auto& child : node->children())
+      if (auto system = child->as<IFileSystem>())
+        if (visit(*system)) return;
+  }
 }
 
 std::string FileServer::read(std::string_view resource) {

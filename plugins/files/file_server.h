@@ -24,6 +24,8 @@ class FileServer : public Node, public IFileServer {
   SPARK_CLASS(FileServer, Node)
  public:
   static void describe(Description<FileServer>& d);
+  /// A node whose file systems come before those of all file servers: the files of a recording that is simulated again.
+  static constexpr const char* kOfProgram = "/sys/host/files";
 
   std::string read(std::string_view resource) override;
   bool exists(std::string_view resource) override;
@@ -31,7 +33,7 @@ class FileServer : public Node, public IFileServer {
   std::optional<std::filesystem::path> hostFile(std::string_view resource) override;
 
  private:
-  /// Calls `visit` for the file systems, in order, until it returns true.
+  /// Calls `visit` for the file systems, in order, until it returns true: first for those of the program (kOfProgram).
   template <class F>
   void forEach(F visit) const;
   /// Throws Error with the file systems that were searched.

@@ -2,9 +2,15 @@
 
 #include <spdlog/sinks/rotating_file_sink.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 namespace spark {
 
@@ -25,6 +31,15 @@ void requireRegular(const std::string& file) {
                                                                : "a special file";
   throw Error(fmt::format("file: expected a regular file or a new one, found {}: {}", found, file));
 }
+
+/// True if the file begins as a text does, which a log may continue.
+bool isText(const std::string& file) {
+  std::array<char, 4096> begin;
+  std::ifstream in(file, std::ios::binary);
+  in.read(begin.data(), begin.size());
+  return std::none_of(begin.begin(), begin.begin() + in.gcount(),
+                      [](char c) { return (c >= 0 && c < ' ' && !std::isspace(c)) || c == 127; });
+}
 }  // namespace
 
 void FileLogSink::describe(Description<FileLogSink>& d) {
@@ -44,8 +59,18 @@ void FileLogSink::describe(Description<FileLogSink>& d) {
 std::shared_ptr<spdlog::logger> FileLogSink::open() {
   if (file_.empty()) return nullptr;
   requireRegular(file_);
-  return inThread(std::make_shared<spdlog::sinks::rotating_file_sink_st>(file_, static_cast<std::size_t>(maxSize_),
-                                                                         static_cast<std::size_t>(older_)));
+  if (!outputs::permitted(file_)) {
+    kernel().log().warning("{}.file: {} is not written, since a recording names it", path(), file_);
+    return nullptr;
+  }
+  const bool continues = isText(file_);
+  outputs::check(file_, "the log", continues);
+  if (outputs::isTrial()) return nullptr;
+  if (!continues && std::filesystem::exists(file_)) std::filesystem::resize_file(file_, 0);
+  spdlog::file_event_handlers events;
+  events.after_open = [](const std::string& name, std::FILE* file) { outputs::lock(fileno(file), name, "the log"); };
+  return inThread(std::make_shared<spdlog::sinks::rotating_file_sink_st>(
+      file_, static_cast<std::size_t>(maxSize_), static_cast<std::size_t>(older_), false, events));
 }
 
 void FileLogSink::setFile(std::string file) {

@@ -101,7 +101,8 @@ void WebServer::setPort(int port) {
 int WebServer::viewers() const { return service_ ? service_->viewers() : 0; }
 int WebServer::connections() const { return service_ ? service_->connections() : 0; }
 
-void WebServer::setToken(std::string token) {
+void WebServer::setToken(const Secret& secret) {
+  std::string token = secret.text;
   mustNotListen("setToken");
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; };
   if (!token.empty() && (token.size() < kMinTokenLength || !std::all_of(token.begin(), token.end(), plain)))

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "api/credentials.h"
 #include "api/phases.h"
 #include "exchange.h"
 #include "spark/describe.h"
@@ -52,7 +53,7 @@ class WebServer : public Node, public IInputSource {
   int connections() const;
   /// Sets the referee's token; "" generates one. Throws Error if the token is too short or the server listens already.
   /// Not a property, since properties can be read.
-  void setToken(std::string token);
+  void setToken(const Secret& secret);
   std::string link() const;
   std::string refereeLink() const;
   void open();

@@ -1,12 +1,10 @@
 #include "monitor_log.h"
 
-#include <fcntl.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <utility>
+
+#include "spark/error.h"
 
 namespace spark {
 
@@ -15,9 +13,9 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
   d.doc("Writes a log of the match that log players and monitors can play: one monitor message a line.");
   d.link(&MonitorLog::drawings_, At<IDrawings>());
   d.link(&MonitorLog::tape_, At<IInputTape>()).doc("While it plays a recorded run, the log of that run stays.");
-  d.property("file", &L::file_)
+  d.property("file", &L::file, &L::setFile)
       .ofProcess()
-      .doc("The file; its content is replaced. Used when the first record is written.");
+      .doc("The file, which is new, or replaced with --force. It is opened when the first record is written.");
   d.property("interval", &L::interval_)
       .unit("s")
       .min(0)
@@ -28,6 +26,13 @@ void MonitorLog::describe(Description<MonitorLog>& d) {
       .doc("It is written although a recorded run is played, to another file than that of the run.");
   d.property("records", &L::records_).readOnly().doc("Number of records written.");
   d.implements<IFrameTaker>();
+}
+
+void MonitorLog::setFile(std::string file) {
+  // A name that will be refused is an error of the config, not of the first cycle.
+  const bool written = whilePlayed_ || !tape_ || !tape_->playing();
+  if (written && outputs::permitted(file)) outputs::check(file, "the log");
+  file_ = std::move(file);
 }
 
 void MonitorLog::event(const Element& event) {
@@ -41,14 +46,10 @@ void MonitorLog::event(const Element& event) {
 /// Opens the file at the first frame. False if that failed, now or before.
 bool MonitorLog::open(const NewestFrame& newest) {
   if (failed_ || view_) return !failed_;
-  // With O_NONBLOCK a pipe without a reader fails instead of blocking the match. Later writes do wait for its reader.
-  errno = 0;
-  if (const int file = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NONBLOCK | O_CLOEXEC, 0666); file >= 0) {
-    fcntl(file, F_SETFL, fcntl(file, F_GETFL) & ~O_NONBLOCK);
-    out_.reset(fdopen(file, "wb"));
-  }
-  if (!out_) {
-    fail(errno == ENXIO ? "is a pipe that nobody reads" : "cannot be opened for writing");
+  try {
+    out_ = std::make_unique<OutputFile>(file_, "the log");
+  } catch (const Error& e) {
+    fail(e.what());
     return false;
   }
   view_.emplace(newest);
@@ -82,19 +83,20 @@ void MonitorLog::recordDrawings() {
 
 void MonitorLog::write() {
   record_ += '\n';
-  errno = 0;
-  std::fwrite(drawn_.data(), 1, drawn_.size(), out_.get());
-  std::fwrite(record_.data(), 1, record_.size(), out_.get());
-  if (std::fflush(out_.get()) != 0 || std::ferror(out_.get())) return fail("cannot be written to");
+  try {
+    out_->write(drawn_);
+    out_->write(record_);
+  } catch (const Error& e) {
+    return fail(fmt::format("cannot write to the log {}: {}", file_, e.what()));
+  }
   view_->delivered();
   ++records_;
 }
 
 void MonitorLog::fail(std::string_view what) {
   failed_ = true;
-  kernel().log().error(
-      "{}: the log '{}' {} ({}); there is no log from here on. Check the folder and the space on the disk.", path(),
-      file_, what, errno ? std::strerror(errno) : "unknown reason");
+  kernel().log().error("{}: {}. There is no log from here on; check the folder and the space on the disk.", path(),
+                       what);
 }
 
 }  // namespace spark

@@ -2,7 +2,6 @@
 /// \file
 /// Writes logs.
 
-#include <cstdio>
 #include <memory>
 
 #include "api/drawing.h"
@@ -10,6 +9,7 @@
 #include "monitor_view.h"
 #include "spark/describe.h"
 #include "spark/node.h"
+#include "spark/output_file.h"
 
 namespace spark {
 
@@ -21,6 +21,8 @@ class MonitorLog : public Node, public IFrameTaker {
  public:
   static void describe(Description<MonitorLog>& d);
 
+  const std::string& file() const { return file_; }
+  void setFile(std::string file);
   void event(const Element& event) override;
   void take(const NewestFrame& newest, IMonitorEncoder* encoder, const Event& event) override;
 
@@ -35,10 +37,7 @@ class MonitorLog : public Node, public IFrameTaker {
 
   std::optional<MonitorView> view_;
   Predicates early_;  ///< events before the first frame
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> out_;
+  std::unique_ptr<OutputFile> out_;
   std::string record_, drawn_;  ///< message and draw commands of the current record
   Link<IDrawings> drawings_;
   Link<IInputTape> tape_;

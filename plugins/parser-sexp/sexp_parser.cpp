@@ -11,8 +11,10 @@ class SexpParser : public Leaf, public IParser {
   static void describe(Description<SexpParser>& d) {
     d.doc("Reads and writes S-expressions as SimSpark does.");
     d.property("decimals", &SexpParser::decimals_)
-        .range(0, 9)
-        .doc("Decimals of numbers that are not integers; the mainline server has 2, the SPL build 3.");
+        .range(-1, 9)
+        .doc(
+            "Decimals of numbers that are not integers; the mainline server has 2, the SPL build 3. -1: as many digits "
+            "as it takes to read back the same number.");
     d.property("maxDepth", &SexpParser::maxDepth_).range(1, 1000).doc("Messages with deeper nesting are refused.");
     d.property("maxTokens", &SexpParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
     d.method("parse", &SexpParser::parseText)

@@ -132,6 +132,8 @@ class Reader {
   void readFromFront();
   bool readFromEnd();
   std::string bytes(std::uint64_t offset, std::uint64_t length) const;
+  void define(std::string_view content);
+  void readRepeated(std::uint8_t op, std::string_view content);
   void readSchema(std::string_view content);
   void readChannel(std::string_view content);
   void readMetadata(std::string_view content);
@@ -142,6 +144,7 @@ class Reader {
   int fd_ = -1;
   std::uint64_t size_ = 0;
   std::vector<std::string> lacks_;
+  std::size_t definitions_ = 0;  ///< bytes of schemas and channels
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint16_t, Channel> channels_;
   std::vector<std::pair<std::string, std::map<std::string, std::string>>> metadata_;

@@ -15,7 +15,11 @@
 namespace spark::mcap {
 
 namespace {
-constexpr std::uint64_t kMaxChunk = 256u << 20;  // bytes; larger ones are damaged
+// Limits of what a small file may need; beyond them it is damaged.
+constexpr std::uint64_t kMaxChunk = 256u << 20;     // bytes
+constexpr std::uint64_t kFreeChunk = 16u << 20;     // bytes that a chunk may have, however short it is compressed
+constexpr std::uint64_t kMaxRatio = 1000;           // of a larger one's sizes
+constexpr std::size_t kMaxDefinitions = 16u << 20;  // bytes of schemas and channels
 constexpr std::size_t kFooterSize = kRecordHead + 20;
 }  // namespace
 
@@ -31,7 +35,11 @@ Reader::Reader(const std::string& file) : name_(file) {
     size_ = static_cast<std::uint64_t>(about.st_size);
     if (size_ < kMagic.size() || bytes(0, kMagic.size()) != kMagic)
       throw Error(fmt::format("{} is no recording: expected an MCAP file", file));
-    if (!readFromEnd()) readFromFront();
+    if (!readFromEnd()) {
+      schemas_.clear(), channels_.clear(), metadata_.clear(), attachments_.clear(), chunks_.clear();
+      definitions_ = 0;
+      readFromFront();
+    }
   } catch (...) {
     ::close(fd_);
     throw;
@@ -66,9 +74,16 @@ std::map<std::string, std::string> Reader::metadataOf(std::string_view name) con
   return {};
 }
 
+void Reader::define(std::string_view content) {
+  definitions_ += content.size();
+  if (definitions_ > kMaxDefinitions)
+    throw Error(fmt::format("its schemas and channels have more than {} MB", kMaxDefinitions >> 20));
+}
+
 void Reader::readSchema(std::string_view content) {
   FieldsReader f(content);
   const std::uint16_t id = f.u16();
+  define(content);
   Schema& s = schemas_[id];
   s.name = f.text(), s.encoding = f.text(), s.data = f.text();
 }
@@ -76,8 +91,16 @@ void Reader::readSchema(std::string_view content) {
 void Reader::readChannel(std::string_view content) {
   FieldsReader f(content);
   const std::uint16_t id = f.u16();
+  define(content);
   Channel& c = channels_[id];
   c.schema = f.u16(), c.topic = f.text(), c.encoding = f.text();
+}
+
+/// Reads a definition in a chunk, where the known ones may be repeated each time the chunk is read.
+void Reader::readRepeated(std::uint8_t op, std::string_view content) {
+  const std::uint16_t id = FieldsReader(content).u16();
+  if (op == kSchema ? schemas_.contains(id) : channels_.contains(id)) return;
+  op == kSchema ? readSchema(content) : readChannel(content);
 }
 
 void Reader::readMetadata(std::string_view content) {
@@ -138,6 +161,13 @@ bool Reader::readFromEnd() {
     if (start == 0 || start > footerAt) return false;
     const std::string summary = bytes(start, footerAt - start);
     if (crc != 0 && crc32(std::string_view(end).substr(0, kFooterSize - 4), crc32(summary)) != crc) return false;
+    // What is listed has its own place in the file: nothing is listed twice.
+    std::uint64_t left = size_;
+    const auto mayBeHere = [&](std::uint64_t at, std::uint64_t length) {
+      if (at > size_ || length > size_ - at || length > left) return false;
+      left -= length;
+      return true;
+    };
     for (FieldsReader f(summary); !f.left().empty();) {
       const auto op = f.number<std::uint8_t>();
       const std::string_view content = f.raw(f.u64());
@@ -146,7 +176,7 @@ bool Reader::readFromEnd() {
       if (op == kChannel) readChannel(content);
       if (op == kAttachmentIndex || op == kMetadataIndex) {
         const std::uint64_t at = c.u64(), length = c.u64();
-        if (length < kRecordHead) return false;
+        if (length < kRecordHead || !mayBeHere(at, length)) return false;
         if (op == kMetadataIndex)
           readMetadata(bytes(at + kRecordHead, length - kRecordHead));
         else if (!readAttachment(at + kRecordHead, length - kRecordHead))
@@ -156,13 +186,12 @@ bool Reader::readFromEnd() {
         Chunk chunk;
         chunk.begin = c.time(), chunk.end = c.time();
         chunk.offset = c.u64(), chunk.length = c.u64();
-        if (chunk.offset > size_ || chunk.length > size_ - chunk.offset) return false;
+        if (!mayBeHere(chunk.offset, chunk.length)) return false;
         chunks_.push_back(chunk);
       }
     }
     return true;
   } catch (const Error&) {
-    schemas_.clear(), channels_.clear(), metadata_.clear(), attachments_.clear(), chunks_.clear();
     return false;
   }
 }
@@ -208,7 +237,8 @@ bool Reader::forEach(const Chunk& chunk, const std::function<bool(const Message&
     const std::uint64_t size = f.u64();
     const std::uint32_t crc = f.u32();
     const std::string_view compression = f.text(), stored = f.raw(f.u64());
-    if (size > kMaxChunk) throw Error("its size is too large");
+    if (size > kMaxChunk || (size > kFreeChunk && size / kMaxRatio > stored.size()))
+      throw Error("its size is too large");
     std::string records;
     if (compression == "zstd") {
       records.resize(size);
@@ -223,8 +253,7 @@ bool Reader::forEach(const Chunk& chunk, const std::function<bool(const Message&
     for (FieldsReader r(records); more && !r.left().empty();) {
       const auto op = r.number<std::uint8_t>();
       const std::string_view content = r.raw(r.u64());
-      if (op == kSchema) readSchema(content);
-      if (op == kChannel) readChannel(content);
+      if (op == kSchema || op == kChannel) readRepeated(op, content);
       if (op != kMessage) continue;
       FieldsReader m(content);
       Message message;

@@ -20,7 +20,8 @@ constexpr std::string_view kNames[] = {"a cycle",   "the wall clock", "a connect
                                        "a leaving", "a request",      "a command",    "a decision"};
 std::string_view nameOf(Input::Kind kind) { return kNames[static_cast<std::size_t>(kind)]; }
 
-constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes; a recorder queues fewer
+constexpr std::size_t kMostUnfinished = 512u << 20;  // bytes of inputs of one cycle; a recorder queues fewer
+constexpr std::size_t kMostAtOnce = 128u << 20;      // bytes of inputs of one time
 
 /// True for what play() passes on; all else is asked for.
 bool isPassed(Input::Kind kind) {
@@ -117,7 +118,7 @@ mcap::Time InputPlayer::timeNow() const { return recorder::nanoseconds(simulatio
 void InputPlayer::seek(double seconds) {
   if (!snapshots_) throw Error(fmt::format("{}: expected a node {}", path(), ISnapshots::kPath));
   const auto at = recorder::stateBefore(*reader_, seconds);
-  if (!at) throw Error(fmt::format("{} has no whole state up to {} s", file_, seconds));
+  if (!at) throw Error(fmt::format("{} has no state up to {} s", file_, seconds));
   goTo(*at);
 }
 
@@ -204,13 +205,16 @@ bool InputPlayer::readChunk() {
 bool InputPlayer::readPieces() {
   if (pieces_.empty()) return false;
   std::vector<OwnInput> read;
-  std::size_t counted = 0, unfinished = unfinished_;
+  std::size_t counted = 0, unfinished = unfinished_, sum = 0;
   try {
     for (const mcap::Time time = pieces_.front().first; !pieces_.empty() && pieces_.front().first == time;) {
       inputReader_.read(pieces_.front().second, read);
       pieces_.pop_front();
-      for (; counted < read.size(); ++counted)
+      for (; counted < read.size(); ++counted) {
+        sum += read[counted].bytes();
         unfinished = read[counted].kind == Input::Kind::cycle ? 0 : unfinished + read[counted].bytes();
+      }
+      if (sum > kMostAtOnce) throw Error(fmt::format("one time has more than {} MB of inputs", kMostAtOnce >> 20));
       if (unfinished > kMostUnfinished)
         throw Error(fmt::format("a cycle has more than {} MB of inputs", kMostUnfinished >> 20));
     }

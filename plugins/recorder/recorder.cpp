@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "about.h"
+#include "api/credentials.h"
 #include "foxglove.h"
 #include "shape.h"
 #include "snapshots.h"
@@ -44,6 +46,7 @@ void Recorder::describe(Description<Recorder>& d) {
       .doc("Cycles between two hashes of the state: a simulation that differs is noticed after as many at most.");
   d.method("record", &Recorder::record).parameters({"file", "arguments"}).doc("Begins a recording.");
   d.method("finish", &Recorder::finish).doc("Ends the recording.");
+  d.method("discard", &Recorder::discard).doc("Ends the recording, and removes its file if it was new.");
   d.on<&Recorder::beforePublish>(phase::kSense);
   d.on<&Recorder::endCycle>(phase::kPublish);
 }
@@ -102,14 +105,54 @@ void Recorder::finish() {
   if (!kernel().isEnding() && simulation_ && (end > lastTime_ || simulation_->cycle() != stateCycle_)) keyFrame(end);
   if (match_) match_->finish(end);
   match_.reset();
+  if (const std::string why = recording_->end(); !why.empty() && !failed_)
+    kernel().log().error("{}: the recording {} lacks its end: {}", path(), file_, why);
   recording_.reset();
   frames_.reset();
   file_.clear();
 }
 
+void Recorder::discard() {
+  if (recording_) recording_->discard();
+  finish();
+}
+
 bool Recorder::put(const Input& input) {
-  if (recording_ && !failed_) inputs_.add(input);
+  if (!recording_ || failed_) return true;
+  if (input.kind == Input::Kind::request) {
+    const std::string text = withoutSecrets(input.text);
+    Input public_ = input;
+    public_.text = text;
+    inputs_.add(public_);
+  } else {
+    inputs_.add(input);
+  }
   return true;
+}
+
+/// The line of a request without the arguments that are secrets: whoever reads the recording must not learn them.
+std::string Recorder::withoutSecrets(std::string_view request) const {
+  using Json = nlohmann::json;
+  Json json = Json::parse(request, nullptr, false);
+  const auto word = [&json](const char* key) {
+    const auto at = json.find(key);
+    return at != json.end() && at->is_string() ? at->get<std::string>() : std::string();
+  };
+  const bool calls = json.is_object() && word("do") == "call";
+  const Leaf* const leaf = calls ? kernel().root().find(word("path")) : nullptr;
+  const Method* const method = leaf ? leaf->classObject()->method(word("method")) : nullptr;
+  if (!method) return std::string(request);
+  const std::string mark = fmt::format(": {}", Convert<Secret>::kName);
+  bool any = false;
+  for (std::size_t i = 0; i < method->parameters.size(); ++i) {
+    if (!method->parameters[i].ends_with(mark)) continue;
+    any = true;
+    if (Json& given = json["arguments"]; given.is_array() && i < given.size())
+      given[i] = "";
+    else if (!given.is_array())
+      given = Json::array();
+  }
+  return any ? json.dump(-1, ' ', false, Json::error_handler_t::replace) : std::string(request);
 }
 
 IInputTape::Clock::time_point Recorder::time(Clock::time_point live) {

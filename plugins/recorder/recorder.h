@@ -38,6 +38,8 @@ class Recorder : public Node, public IInputTape {
   void record(std::string file, const std::vector<std::string>& arguments);
   /// Writes the rest and the end.
   void finish();
+  /// Ends it and removes its file again, if record() made that: there was no run.
+  void discard();
 
  protected:
   void onUnlink() override;
@@ -45,6 +47,7 @@ class Recorder : public Node, public IInputTape {
  private:
   void beforePublish(const Event&) { structure_ = kernel().structureVersion(); }
   void endCycle(const Event& event);
+  std::string withoutSecrets(std::string_view request) const;
   void writeInputs(mcap::Time time);
   void keyFrame(mcap::Time time);
   void attachNewTexts(mcap::Time time);

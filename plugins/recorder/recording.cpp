@@ -1,12 +1,6 @@
 #include "recording.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <chrono>
-#include <cstring>
 
 #include "spark/error.h"
 
@@ -22,23 +16,32 @@ constexpr auto kChunkWall = std::chrono::milliseconds(500);  // of real time
 // all else: at this interval, and at once only for this many bytes.
 constexpr auto kLook = kChunkWall / 4;
 constexpr std::size_t kWakeBytes = 1u << 20;
+// How long the end of a recording waits for a pipe that takes nothing.
+constexpr auto kPatience = std::chrono::seconds(4);
 }  // namespace
 
 Recording::Recording(const std::string& file, std::string library, std::size_t maxQueued)
-    : file_(file), library_(std::move(library)), maxQueued_(maxQueued) {
-  fd_ = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (fd_ < 0) throw Error(fmt::format("cannot write the recording {}: {}", file, std::strerror(errno)));
+    : library_(std::move(library)), out_(file, "the recording"), maxQueued_(maxQueued) {
   thread_ = std::thread([this] { work(); });
 }
 
-Recording::~Recording() {
-  {
-    const std::lock_guard lock(mutex_);
-    ending_ = true;
+Recording::~Recording() { end(); }
+
+std::string Recording::end() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      ending_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
   }
-  wake_.notify_one();
-  thread_.join();
-  ::close(fd_);
+  return failure_;
+}
+
+void Recording::discard() {
+  end();
+  out_.discard();
 }
 
 std::string Recording::failure() const {
@@ -106,13 +109,13 @@ void Recording::queue(Item item) {
   if (urgent) wake_.notify_one();
 }
 
-void Recording::put(std::string_view bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) throw Error(std::strerror(errno));
-    bytes.remove_prefix(static_cast<std::size_t>(n));
-  }
+void Recording::put(std::string_view bytes) {
+  using Clock = std::chrono::steady_clock;
+  moved_ = Clock::now();
+  out_.write(bytes, [this] {
+    const std::lock_guard lock(mutex_);
+    return (ending_ || toFlush_ > 0) && Clock::now() - moved_ > kPatience;
+  });
 }
 
 void Recording::add(mcap::Writer& writer, std::uint16_t channel, mcap::Time time, std::string_view data) {

@@ -2,6 +2,7 @@
 /// \file
 /// A recording that is being written, by a thread of its own.
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "mcap.h"
+#include "spark/output_file.h"
 
 namespace spark::recorder {
 
@@ -21,7 +23,7 @@ class Recording {
  public:
   /// Opens the file. `maxQueued`: bytes that may wait to be written. Throws Error if it cannot be written.
   Recording(const std::string& file, std::string library, std::size_t maxQueued = 256u << 20);
-  /// Writes what is queued, and the end, unless it has failed: readers then say that the end is missing.
+  /// As end().
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
@@ -36,6 +38,11 @@ class Recording {
   void later(std::size_t bytes, std::function<void(const Put& put)> encode);
   void attachment(mcap::Time time, std::string name, std::string mediaType, std::string data);
   void metadata(std::string name, std::map<std::string, std::string> values);
+  /// Writes what is queued, and the end, unless it has failed: readers then say that the end is missing. A pipe whose
+  /// reader takes nothing for some seconds costs the recording its end. Nothing may follow; returns failure().
+  std::string end();
+  /// Removes the file again, if it was made here: there was no run to record.
+  void discard();
   /// Waits until all so far is in the file, or the recording has failed.
   void flush();
   /// Why the recording has ended; "" while it goes on.
@@ -59,10 +66,11 @@ class Recording {
   void work();
   void write(mcap::Writer& writer, const Item& item);
   static void add(mcap::Writer& writer, std::uint16_t channel, mcap::Time time, std::string_view data);
-  void put(std::string_view bytes) const;
+  void put(std::string_view bytes);
 
-  std::string file_, library_;
-  int fd_ = -1;
+  std::string library_;
+  OutputFile out_;
+  std::chrono::steady_clock::time_point moved_;  ///< when the file took bytes last; thread of the recording
   std::uint16_t channels_ = 0, schemas_ = 0;
   mutable std::mutex mutex_;
   std::condition_variable wake_, flushed_;

@@ -2,23 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 
 #include "about.h"
 #include "input_codec.h"
 #include "mcap.h"
 #include "shape.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 #include "spark/random.h"
 #include "spark/state.h"
 
 namespace spark {
-
-namespace fs = std::filesystem;
 
 void Snapshots::describe(Description<Snapshots>& d) {
   d.doc("Takes snapshots of a run, and goes on from them.");
@@ -27,8 +23,11 @@ void Snapshots::describe(Description<Snapshots>& d) {
   d.link(&Snapshots::tape_, At<IInputTape>());
   d.property("arguments", &Snapshots::arguments_).ofProcess().doc("The command line of the program, for files.");
   d.method("save", &Snapshots::save)
-      .parameters({"file"})
-      .doc("Writes a snapshot of the state between the last cycle and the next one.");
+      .parameters({"file", "replace"})
+      .optional(1)
+      .doc(
+          "Writes a snapshot of the state between the last cycle and the next one. A file that exists is not "
+          "replaced unless `replace` says so.");
   d.method("load", &Snapshots::loadFile)
       .parameters({"file", "time [s]"})
       .doc("Goes on from the newest state of a snapshot or a recording that is not later than a simulated time.");
@@ -93,54 +92,31 @@ Snapshot Snapshots::read(std::string_view bytes) const {
 }
 
 namespace {
-bool sameFile(const fs::path& a, const fs::path& b) {
+bool isSameFile(const std::filesystem::path& a, const std::filesystem::path& b) {
   std::error_code failed;
-  return fs::exists(a, failed) && fs::exists(b, failed) && fs::equivalent(a, b, failed);
-}
-
-/// Where a snapshot is written: where a link leads. Throws Error if something else than a file is there.
-fs::path targetOf(const std::string& file) {
-  if (file.empty()) throw Error("expected the name of a file for the snapshot, found none");
-  std::error_code failed;
-  if (!fs::exists(file, failed)) return file;
-  if (!fs::is_regular_file(file, failed))
-    throw Error(fmt::format("cannot write the snapshot {}: something else than a file is there", file));
-  return fs::canonical(file);
+  return std::filesystem::equivalent(a, b, failed) && !failed;
 }
 }  // namespace
 
-void Snapshots::save(const std::string& file) {
+void Snapshots::save(const std::string& file, bool replace) {
   if (tape_ && tape_->playing()) return;  // the recorded run did
-  const fs::path target = targetOf(file);
-  if (const Leaf* tape = tape_.leaf(); tape && sameFile(target, getProperty(*tape, "file").plain()))
+  if (const Leaf* tape = tape_.leaf(); tape && isSameFile(file, getProperty(*tape, "file").plain()))
     throw Error(
         fmt::format("cannot write the snapshot {}: the recording of this run is there; take another name", file));
+  FileDraft out(file, "the snapshot", replace);
   Snapshot now;
   take(now, true);
   const mcap::Time time = recorder::nanoseconds(simulation_ ? simulation_->time() : 0);
-  const fs::path part = target.string() + ".part";
-  std::ofstream out(part, std::ios::binary);
-  if (!out) throw Error(fmt::format("cannot write the snapshot {}: {}", file, std::strerror(errno)));
-  {
-    mcap::Writer writer(
-        [&](std::string_view bytes) { out.write(bytes.data(), static_cast<std::streamsize>(bytes.size())); }, "Spark");
-    const std::uint16_t states =
-        writer.channel({0, std::string(recorder::kStates), std::string(recorder::kStatesEncoding)});
-    writer.metadata("spark", recorder::about(kernel(), arguments_));
-    for (const Sources::Source& s : kernel().sources().all())
-      if (const std::string* text = kernel().sources().text(s.hash))
-        writer.attachment(time, recorder::attachmentName(s), recorder::kAttachmentType, *text);
-    writer.message(states, time, write(now));
-    writer.finish();
-  }
-  out.close();
-  std::error_code failed;
-  if (out) fs::rename(part, target, failed);
-  if (!out || failed) {
-    const std::string why = failed ? failed.message() : "the disk is full, or gone";
-    fs::remove(part, failed);
-    throw Error(fmt::format("cannot write the snapshot {}: {}", file, why));
-  }
+  mcap::Writer writer([&](std::string_view bytes) { out.write(bytes); }, "Spark");
+  const std::uint16_t states =
+      writer.channel({0, std::string(recorder::kStates), std::string(recorder::kStatesEncoding)});
+  writer.metadata("spark", recorder::about(kernel(), arguments_));
+  for (const Sources::Source& s : kernel().sources().all())
+    if (const std::string* text = kernel().sources().text(s.hash))
+      writer.attachment(time, recorder::attachmentName(s), recorder::kAttachmentType, *text);
+  writer.message(states, time, write(now));
+  writer.finish();
+  out.finish();
   kernel().log().info("The snapshot {} is written: cycle {}.", file, now.cycle);
 }
 

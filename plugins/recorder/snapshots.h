@@ -30,8 +30,9 @@ class Snapshots : public Node, public ISnapshots {
   std::string write(const Snapshot& snapshot) const override;
   Snapshot read(std::string_view bytes) const override;
 
-  /// Writes a file with a snapshot of now, and the texts that the run was made of. Throws Error if that fails.
-  void save(const std::string& file);
+  /// Writes a file with a snapshot of now, and the texts that the run was made of. `replace`: it may take the place of
+  /// a file that exists. Throws Error if that fails; what exists then stays.
+  void save(const std::string& file, bool replace);
 
  protected:
   void onLink() override;

@@ -63,7 +63,7 @@ std::unique_ptr<Wire> RemoteMount::open() {
   }
 }
 
-void RemoteMount::connect(const std::string& token) {
+void RemoteMount::connect(const Secret& token) {
   if (wire_) throw Error(fmt::format("{} is connected to {} already", path(), address_));
   kernel().root().require<RemoteServer>();  // it serves this mount
   mirror_.clear();
@@ -71,7 +71,7 @@ void RemoteMount::connect(const std::string& token) {
   listeners_.clear();
   wire_ = open();
   wire_->setLimit(kMostHostBytes);
-  wire_->send({kHello, kProtocol, token, clientName_, of_});
+  wire_->send({kHello, kProtocol, token.text, clientName_, of_});
   lostBecause_.clear();
   saidReady_ = false;
   awaitReply(0);

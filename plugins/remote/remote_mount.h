@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "api/credentials.h"
 #include "mirror.h"
 #include "remote_node.h"
 #include "spark/describe.h"
@@ -25,7 +26,7 @@ class RemoteMount : public Node, public IRemoteLink {
 
   /// Connects to `address` and fetches the tree below `of`. `token`: see RemoteServer; a Unix socket needs none. Throws
   /// Error if the host cannot be reached or refuses.
-  void connect(const std::string& token);
+  void connect(const Secret& token);
   /// Disconnects. The nodes stay, but cannot be used.
   void close();
 

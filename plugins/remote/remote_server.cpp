@@ -71,7 +71,8 @@ void RemoteServer::onUnlink() {
   address_.clear();
 }
 
-void RemoteServer::listen(const std::string& address, const std::string& token) {
+void RemoteServer::listen(const std::string& address, const Secret& secret) {
+  const std::string& token = secret.text;
   if (!address_.empty()) throw Error(fmt::format("{} listens at {} already", path(), address_));
   if (!token.empty() && token.size() < kShortestToken)
     throw Error(fmt::format("expected a token of at least {} characters, found {}", kShortestToken, token.size()));

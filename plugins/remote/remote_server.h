@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "api/credentials.h"
 #include "api/inputs.h"
 #include "api/net.h"
 #include "api/phases.h"
@@ -36,7 +37,7 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   /// Listens for hosts. `address`: see remote::Address; port 0 is a free one. `token`: what they must know; "" makes
   /// one up. A Unix socket is open to the user of this host only and needs none. Does nothing while a recording is
   /// played. Throws Error if it listens already, or if the address cannot be used.
-  void listen(const std::string& address, const std::string& token);
+  void listen(const std::string& address, const Secret& secret);
   /// The token, for what prints it.
   const std::string& token() const { return token_; }
 

@@ -14,6 +14,7 @@
 #include <filesystem>
 
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 extern char** environ;
 
@@ -43,12 +44,11 @@ struct Attributes {
 AgentProgram::AgentProgram(const AgentType& type, const std::vector<std::string>& command, const std::string& log,
                            const std::vector<Descriptor>& descriptors) {
   Actions actions;
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_TRUNC;
   posix_spawn_file_actions_addopen(&actions.list, 0, "/dev/null", O_RDONLY, 0);
-  const std::string out = log.empty() ? "/dev/null" : log + "-stdout.log",
-                    errors = log.empty() ? "/dev/null" : log + "-stderr.log";
-  posix_spawn_file_actions_addopen(&actions.list, 1, out.c_str(), kFlags, 0644);
-  posix_spawn_file_actions_addopen(&actions.list, 2, errors.c_str(), kFlags, 0644);
+  const OutputFile out(log.empty() ? "/dev/null" : log + "-stdout.log", "what an agent prints"),
+      errors(log.empty() ? "/dev/null" : log + "-stderr.log", "what an agent prints");
+  posix_spawn_file_actions_adddup2(&actions.list, out.descriptor(), 1);
+  posix_spawn_file_actions_adddup2(&actions.list, errors.descriptor(), 2);
   for (const auto& [ours, theirs] : descriptors) posix_spawn_file_actions_adddup2(&actions.list, ours, theirs);
   posix_spawn_file_actions_addchdir_np(&actions.list, type.folder.c_str());
   // A group of its own, so that what it starts ends with it, and Ctrl-C at the host does not reach it first.

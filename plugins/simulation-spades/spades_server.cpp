@@ -9,6 +9,7 @@
 
 #include "agent_process.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 namespace spark {
 
@@ -156,7 +157,12 @@ void SpadesServer::setThinkTimes(bool on) {
 }
 
 void SpadesServer::setDatabase(std::string file) {
-  // Where a recording is played, no agents are started.
+  // Where a recording is played, no agents are started. One that goes on starts those that the user names.
+  if (!file.empty() && !playing() && !outputs::permitted(file))
+    throw Error(
+        fmt::format("{}.database: a recording names the programs of {}, and programs that a recording names are not "
+                    "started. Name it yourself to start them: --set agentDatabase={}",
+                    path(), file, file));
   types_ = file.empty() || playing() ? std::map<std::string, spades::AgentType>() : spades::readAgentDatabase(file);
   database_ = std::move(file);
 }

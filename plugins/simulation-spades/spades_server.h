@@ -12,6 +12,7 @@
 #include "agent_database.h"
 #include "agent_mind.h"
 #include "api/agents.h"
+#include "api/credentials.h"
 #include "api/inputs.h"
 #include "api/net.h"
 #include "api/phases.h"
@@ -71,7 +72,7 @@ class SpadesServer : public Node, public IInputSource, public IInputGate, public
   int agentCount() const { return static_cast<int>(agents_.size()); }
   const std::string& database() const { return database_; }
   int port() const { return comm_ ? comm_->port() : port_; }
-  void setToken(std::string token) { token_ = std::move(token); }
+  void setToken(Secret token) { token_ = std::move(token.text); }
   void setPort(int port);
   bool thinkTimes() const { return thinkTimes_; }
   void setThinkTimes(bool on);

@@ -2,6 +2,8 @@
 
 #include <fstream>
 
+#include "spark/output_file.h"
+
 namespace spark {
 
 namespace {
@@ -154,7 +156,7 @@ void SelfCollisionAspect::record(const soccer::Player& player, const Box& a, con
   const std::string line = fmt::format("{} {}: {} and {}", soccer::sideName(player.side()), player.state->unum(),
                                        partName(*a.box), partName(*b.box));
   if (s.printSelfCollisions) kernel().log().info("soccer: self-collision, {}", line);
-  if (s.writeSelfCollisionsToFile)
+  if (s.writeSelfCollisionsToFile && outputs::permitted(s.selfCollisionRecordFilename) && !outputs::isTrial())
     std::ofstream(s.selfCollisionRecordFilename, std::ios::app) << fmt::format("{:.2f} {}\n", game().time(), line);
 }
 

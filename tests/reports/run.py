@@ -34,7 +34,7 @@ class Case:
         if key in ("input", "right"):
             setattr(self, key, value.strip())
         elif key in ("row", "exit"):
-            setattr(self, key, int(value))
+            setattr(self, key, int(value) if value.strip().isdigit() else value.strip())
         elif key == "engines":
             self.engines = ENGINES if value.strip() == "all" else value.split()
         elif key == "args":
@@ -92,9 +92,9 @@ def run(case, engine, folder):
             "seen": "; ".join(wrong or seen), "good": not wrong, "log": log if wrong else ""}
 
 
-def run_all(folder, rows=(), names=(), jobs=1):
-    """The results of all cases with these rows and names, sorted by row."""
-    cases = [Case(f) for f in sorted((HERE / "cases").iterdir()) if f.suffix in (".lua", ".py")]
+def run_all(folder, rows=(), names=(), jobs=1, cases=HERE / "cases"):
+    """The results of all cases of a folder with these rows and names, sorted by row."""
+    cases = [Case(f) for f in sorted(Path(cases).iterdir()) if f.suffix in (".lua", ".py")]
     cases = [c for c in cases if (not rows or c.row in rows) and (not names or c.name in names)]
     work = sorted(((c, e) for c in cases for e in c.engines), key=lambda w: (w[0].row, w[0].name))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
@@ -104,13 +104,14 @@ def run_all(folder, rows=(), names=(), jobs=1):
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--bin", default=HERE.parent.parent / "build/release/bin")
-    parser.add_argument("--row", type=int, action="append", default=[])
+    parser.add_argument("--cases", default=HERE / "cases", help="folder of the cases")
+    parser.add_argument("--row", type=lambda row: int(row) if row.isdigit() else row, action="append", default=[])
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--log", action="store_true", help="print the log of what is wrong")
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     count = bad = 0
-    for r in run_all(Path(options.bin).resolve(), options.row, options.names, options.jobs):
+    for r in run_all(Path(options.bin).resolve(), options.row, options.names, options.jobs, options.cases):
         count, bad = count + 1, bad + (not r["good"])
         print(f"{'right' if r['good'] else 'WRONG'} | {r['row']:>2} | {r['case']} {r['engine']} | {r['input']} | {r['right']} | {r['seen']}", flush=True)
         if options.log and r["log"]:

@@ -14,7 +14,7 @@ using Catch::Contains;
 
 namespace {
 Finished convert(const std::string& in, const std::string& out, const std::vector<std::string>& more = {}) {
-  return runToEnd(joined({program("sparkhost"), "--convert", in, out, "--log-level", "warning"}, more));
+  return runToEnd(joined({program("sparkhost"), "--convert", in, out, "--force", "--log-level", "warning"}, more));
 }
 const std::string kRobots = SPARK_SOURCES "/scenes/robots/";
 }  // namespace

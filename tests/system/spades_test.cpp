@@ -95,8 +95,8 @@ TEST_CASE("A match of 2004 goes on from its middle: agents are started again and
   m.database();
   const auto goOn = [&] {
     std::remove(again.c_str());
-    return runToEnd({program("sparkhost"), "--from", file, "--at", "10", "--duration", "20", "--record", again,
-                     "--log-level", "info"});
+    return runToEnd({program("sparkhost"), "--from", file, "--at", "10", "--duration", "20", "--record", again, "--set",
+                     "agentDatabase=" + m.folder.file("agentdb.xml"), "--log-level", "info"});
   };
   const Finished f = goOn();
   CAPTURE(f.errors);

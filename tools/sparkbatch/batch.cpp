@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -68,13 +69,16 @@ Json batchOf(const Options& o) {
 }
 
 Table::Open openMode(const Options& o) {
-  return o.retry ? Table::Open::retry : o.resume ? Table::Open::resume : Table::Open::fresh;
+  return o.retry    ? Table::Open::retry
+         : o.resume ? Table::Open::resume
+         : o.force  ? Table::Open::replace
+                    : Table::Open::fresh;
 }
 
-/// For a new table, builds the first world, so that a mistake in the command line is an error and not a table of
+/// For a new table, builds the first worlds, so that a mistake in the command line is an error and not a table of
 /// errors.
 const Options& checked(const Options& options, const Sweep& sweep) {
-  if (!fs::exists(options.results)) check(options, sweep.run(1));
+  if (options.force || !fs::exists(options.results)) check(options, sweep);
   return options;
 }
 
@@ -111,7 +115,7 @@ Leader::Leader(const Options& options, Cluster& cluster)
       sweep_(options.sweep, options.seed, options.seeds),
       table_(checked(options, sweep_).results, batchOf(options), openMode(options)),
       existing_(countExisting(table_, sweep_.runs())),
-      progress_(sweep_.runs(), existing_, options.duration),
+      progress_(sweep_.runs(), existing_, std::max(options.duration - options.begin, 0.0)),
       workers_(options.threads, work(options)),
       usage_(options.threads),
       helpers_(cluster.size() - 1) {}
@@ -151,7 +155,7 @@ void Leader::handleMessages(StopMode stop) {
 void Leader::add(Row row) {
   const bool failed = row.value("end", "") == "error";
   usage_.addCpu(row.value("cpuSeconds", 0.0));
-  progress_.add(row.value("simSeconds", 0.0), failed);
+  progress_.add(std::max(row.value("simSeconds", 0.0) - options_.begin, 0.0), failed);
   if (failed && progress_.failed() <= kMaxFailuresShown)
     printLine(
         fmt::format("run {} failed: {}{}", row["run"].get<std::int64_t>(), row.value("error", ""),
@@ -167,7 +171,7 @@ int Leader::run(const std::atomic<StopMode>& stop) {
       if (result) add(std::move(*result));
     startRuns(stop);
     handleMessages(stop);
-    progress_.show(workers_.time());
+    progress_.show(std::max(workers_.time() - options_.begin * workers_.running(), 0.0));
   }
   for (int other = 1; other < cluster_.size(); ++other) cluster_.send(other, MessageKind::exit, "");
   usage_.measure();

@@ -1,5 +1,7 @@
 #include "cluster.h"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 
 #include "spark/error.h"
@@ -59,7 +61,23 @@ bool Cluster::started() {
   return false;
 }
 
+namespace {
+/// The number of tasks that Slurm's srun has started with this one; 1: none.
+int tasksOfSlurm() {
+  const char* const tasks = std::getenv("SLURM_STEP_NUM_TASKS") ? std::getenv("SLURM_STEP_NUM_TASKS")
+                            : std::getenv("SLURM_STEP_ID") || std::getenv("SLURM_STEPID") ? std::getenv("SLURM_NTASKS")
+                                                                                          : nullptr;
+  return tasks ? std::atoi(tasks) : 1;
+}
+}  // namespace
+
 std::unique_ptr<Cluster> Cluster::join() {
+  if (!started() && tasksOfSlurm() > 1)
+    throw spark::Error(
+        fmt::format("Slurm started {} tasks of this program, but nothing that connects them: each would run the whole "
+                    "batch. Say srun --mpi=pmix (srun --mpi=list shows what there is) or mpirun; or srun --ntasks=1 "
+                    "--cpus-per-task=N for one process with N threads.",
+                    tasksOfSlurm()));
   if (!started()) return std::make_unique<Cluster>();
 #ifdef SPARK_MPI
   return std::make_unique<MpiCluster>();

@@ -12,6 +12,8 @@
 #include "crash_report.h"
 #include "output.h"
 #include "recorded_run.h"
+#include "spark/output_file.h"
+#include "state_at.h"
 
 // Exit codes: 0: every run has a row; 1: some rows are errors, or stdout could not be written; 2: an error in the
 // command line, the config or the table, nothing was run; 3: interrupted. stdout gets one JSON line at the end,
@@ -57,27 +59,41 @@ void chooseThreads(Options& options, int neighbours) {
                     options.threads, CPU_COUNT(&mine)));
 }
 
+/// Opens the recording, and simulates the state from which runs branch.
+void branch(Options& options, std::optional<sparkhost::RecordedRun>& origin) {
+  options.origin = &origin.emplace(options.from);
+  spark::outputs::permit(options.results);
+  options.begin = static_cast<double>(origin->recording().end()) * 1e-9;
+  if (!std::isfinite(options.at)) return;
+  sparkhost::Options own;
+  own.at = options.at, own.logLevel = options.logLevel, own.alone = false;
+  own.pluginPaths = options.pluginPaths, own.scenePaths = options.scenePaths;
+  options.state = sparkhost::stateAt(*origin, own);
+  if (options.state) options.begin = options.state->time;
+}
+
 int lead(const Options& options, Cluster& cluster) {
   if (cluster.size() == 1) watchSignals();
   std::optional<Leader> leader;
   try {
     leader.emplace(options, cluster);
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkbatch: {}\n", e.what());
+    sparkhost::printError(fmt::format("sparkbatch: {}\n", e.what()));
     dismissHelpers(cluster);
     return kUsageError;
   }
   const int code = leader->run(stopMode);
   const std::string summary = leader->summary();
   if (sparkhost::printOut(summary + '\n')) return code;
-  fmt::print(stderr, "sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
-             summary);
+  sparkhost::printError(fmt::format("sparkbatch: cannot write to stdout ({}); this line is lost there: {}\n",
+                                    std::strerror(errno), summary));
   return std::max(code, 1);
 }
 }  // namespace
 
 int main(int argc, char** argv) {
   sparkhost::installCrashReport("sparkbatch");
+  sparkhost::survivePoorOutputs();
   std::unique_ptr<Cluster> cluster;
   try {
     cluster = Cluster::join();
@@ -86,12 +102,14 @@ int main(int argc, char** argv) {
     sparkhost::reserveStdout();
     chooseThreads(options, cluster->neighbours());
     std::optional<sparkhost::RecordedRun> origin;
-    if (!options.from.empty()) options.origin = &origin.emplace(options.from);
+    // Files of runs without a row were begun by this batch.
+    spark::outputs::setReplace(options.force || options.resume);
+    if (!options.from.empty()) branch(options, origin);
     if (cluster->number() == 0) return lead(options, *cluster);
     runHelper(options, *cluster);
     return 0;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkbatch: {}\n", e.what());
+    sparkhost::printError(fmt::format("sparkbatch: {}\n", e.what()));
     if (cluster) cluster->abort(kUsageError);
     return kUsageError;
   }

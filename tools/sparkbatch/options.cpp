@@ -35,10 +35,6 @@ Report readReport(const std::string& text) {
   return r;
 }
 
-void makeAbsolute(std::vector<std::string>& folders) {
-  for (std::string& f : folders) f = std::filesystem::absolute(f).lexically_normal().string();
-}
-
 void checkResults(const std::string& file) {
   const std::string extension = std::filesystem::path(file).extension();
   if (extension != ".csv" && extension != ".jsonl")
@@ -63,7 +59,9 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
                    ->type_name("FILE")
                    ->check(CLI::ExistingFile)
                    ->excludes("--config");
-  app.add_option("--at", out.at, "With --from: not from a later state than at this simulated time [s]")
+  app.add_option(
+         "--at", out.at,
+         "With --from a recording: branch at this simulated time [s], which is simulated from the last state before")
       ->type_name("SECONDS")
       ->needs(from);
   app.add_option("--results", out.results, "The table, one row a run: .csv or .jsonl")->type_name("FILE")->required();
@@ -73,7 +71,9 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
   app.add_option("--seed", out.seed, "Seed of the first; the others count up (default 1)")
       ->type_name("N")
       ->check(sparkhost::checkSeed);
-  app.add_option("--duration", out.duration, "A run ends after this simulated time [s]; 0: when the config ends it")
+  app.add_option(
+         "--duration", out.duration,
+         "A run ends at this simulated time [s], counted from the start also with --from; 0: when the config ends it")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--set", settings, "As for sparkhost, the same in every run; {run} and {seed} in V become the run's")
@@ -91,6 +91,7 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
   app.add_flag("--resume", out.resume, "Continues an existing table: executes only runs without a row");
   app.add_flag("--retry", out.retry, "With --resume: removes rows with an error and executes their runs again")
       ->needs("--resume");
+  sparkhost::addForce(app, out.force)->excludes("--resume");
   sparkhost::addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel,
                               "Minimum level of log lines of worlds on stderr");
   app.footer(
@@ -117,9 +118,9 @@ std::optional<int> readOptions(int argc, char** argv, bool print, Options& out) 
     std::ostringstream nowhere;
     return (print ? app.exit(e) : app.exit(e, nowhere, nowhere)) == 0 ? 0 : kUsageError;
   }
-  makeAbsolute(out.pluginPaths);
-  makeAbsolute(out.scenePaths);
-  if (!out.from.empty())  // a run that goes on works in a folder of its own
+  sparkhost::makeAbsolute(out.pluginPaths);
+  sparkhost::makeAbsolute(out.scenePaths);
+  if (!out.from.empty())
     for (std::string* file : {&out.from, &out.results}) *file = std::filesystem::absolute(*file).string();
   return std::nullopt;
 }

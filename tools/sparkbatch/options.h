@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,7 +14,8 @@
 
 namespace sparkhost {
 class RecordedRun;
-}
+struct ForkState;
+}  // namespace sparkhost
 
 namespace sparkbatch {
 
@@ -26,8 +28,10 @@ struct Report {
 struct Options {
   std::string config, results;
   std::string from;      ///< snapshot or recording from which all runs branch, instead of a config; "": none
-  double at = HUGE_VAL;  ///< not from a later state than at this simulated time [s]
-  const sparkhost::RecordedRun* origin = nullptr;  ///< that of `from`, while the batch runs
+  double at = HUGE_VAL;  ///< from the end of the last cycle up to this simulated time [s]
+  const sparkhost::RecordedRun* origin = nullptr;     ///< that of `from`, while the batch runs
+  std::shared_ptr<const sparkhost::ForkState> state;  ///< that of `at`; nullptr: it is in `from`
+  double begin = 0;                                   ///< simulated time at which runs begin [s]
   /// --set, for all runs: keys and texts in order.
   std::vector<std::pair<std::string, std::string>> settings;
   std::vector<Parameter> sweep;
@@ -38,7 +42,7 @@ struct Options {
   int threads = 0;         ///< number of worlds at a time in this process; 0: number of its processors
   std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders
   std::string logLevel = "error";
-  bool resume = false, retry = false;
+  bool resume = false, retry = false, force = false;
 };
 
 /// Parses the command line. If the program is to end at once (help, version, an error), prints that and returns the

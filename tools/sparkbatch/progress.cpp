@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "output.h"
+
 namespace sparkbatch {
 
 namespace {
@@ -29,7 +31,9 @@ std::string clockText(double seconds) {
 }
 }  // namespace
 
-void printLine(std::string_view line) { fmt::print(stderr, "{}{}\n", onTerminal() ? "\r\033[K" : "", line); }
+void printLine(std::string_view line) {
+  sparkhost::printError(fmt::format("{}{}\n", onTerminal() ? "\r\033[K" : "", line));
+}
 
 Progress::Progress(std::int64_t runs, std::int64_t existing, double duration)
     : runs_(runs),
@@ -63,7 +67,7 @@ void Progress::show(double running) {
   if (now < next_) return;
   next_ = now + (terminal_ ? Clock::duration(kTerminalPeriod) : Clock::duration(kLinePeriod));
   if (!terminal_) return printLine(text(running));
-  fmt::print(stderr, "\r\033[K{}", text(running));
+  sparkhost::printError(fmt::format("\r\033[K{}", text(running)));
   std::fflush(stderr);
 }
 

@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 namespace sparkbatch {
 
@@ -35,11 +36,13 @@ std::string textOf(const std::string& file) {
 
 Table::Table(std::string file, const Json& batch, Open open) : name_(std::move(file)), format_(name_) {
   if (open == Open::fresh && fs::exists(name_))
-    throw Error(fmt::format(
-        "{} is there already. Go on with it with --resume, name another file with --results, or remove it.", name_));
+    throw Error(
+        fmt::format("{} is there already. Go on with it with --resume, name another file with --results, or replace it "
+                    "with --force.",
+                    name_));
   try {
     lock(batch, open);
-    if (fs::exists(name_)) read(open == Open::retry);
+    if (open != Open::replace && fs::exists(name_)) read(open == Open::retry);
     if (columns_.empty()) addColumns(Row{{"run", 0}});
     rewrite();
   } catch (...) {
@@ -62,13 +65,15 @@ void Table::lock(const Json& batch, Open open) {
   if (flock(lock_, LOCK_EX | LOCK_NB) != 0)
     throw Error(fmt::format("{} is in use: another sparkbatch is writing it", name_));
   const std::string text = textOf(name);
-  if (open != Open::fresh && fs::exists(name_)) {
+  if ((open == Open::resume || open == Open::retry) && fs::exists(name_)) {
     const Json before = Json::parse(text, nullptr, false);
     if (!before.is_object())
       throw Error(
           fmt::format("{} cannot be resumed: {}, which says what its batch is, is missing or damaged", name_, name));
     return compare(before, batch);
   }
+  if (open == Open::fresh && !text.empty() && !Json::parse(text, nullptr, false).is_object())
+    throw Error(fmt::format("{} is there already and describes no batch; remove it, or replace it with --force", name));
   if (ftruncate(lock_, 0) != 0) fail(fmt::format("cannot write {}", name));
   write(lock_, batch.dump(2) + "\n");
 }
@@ -147,15 +152,11 @@ void Table::sort() {
 }
 
 void Table::rewrite() {
-  const std::string fresh = name_ + ".new";
   std::string text = format_.header(columns_);
   for (const auto& [number, row] : rows_) text += format_.line(row, columns_);
-  const int file = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (file < 0) fail(fmt::format("cannot open {}", fresh));
-  write(file, text);
-  const bool synced = fsync(file) == 0;
-  close(file);
-  if (!synced || std::rename(fresh.c_str(), name_.c_str()) != 0) fail(fmt::format("cannot write {}", name_));
+  spark::FileDraft draft(name_, "the table", true);  // the lock says that it is ours
+  draft.write(text);
+  draft.finish();
   openForAppending();
 }
 

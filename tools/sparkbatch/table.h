@@ -16,8 +16,9 @@ namespace sparkbatch {
 /// perhaps for its last line. A lock allows one process at a time.
 class Table {
  public:
-  /// How to open the file: `fresh`: it must not exist; `resume`: continue it; `retry`: also remove rows with an error.
-  enum class Open { fresh, resume, retry };
+  /// How to open the file: `fresh`: it must not exist; `replace`: begin it anew; `resume`: continue it; `retry`: also
+  /// remove rows with an error.
+  enum class Open { fresh, replace, resume, retry };
 
   /// `batch`: an object with all settings that must be the same for the rows of a table. Throws spark::Error if the
   /// file exists and must not, belongs to another batch (the text says what differs), is damaged, or is in use.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <algorithm>
 #include <chrono>
 
 #include "api/phases.h"
@@ -12,6 +13,7 @@
 #include "recorded_run.h"
 #include "spark/describe.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 #include "spark/state.h"
 #include "tree_values.h"
 
@@ -83,6 +85,7 @@ sparkhost::Options hostOptions(const Options& options, const Run& run) {
   if (!options.origin) return out;
   out.from = options.from;
   out.at = options.at;
+  out.state = options.state;
   return options.origin->options(out);
 }
 
@@ -182,15 +185,45 @@ void build(Host& host, const Options& options) {
   host.build();
   if (!options.origin) return;
   host.goOn();
+  if (const std::string over = host.overAlready(); !over.empty()) throw Error(over);
   // No agent comes from outside.
   if (Leaf* const control = host.kernel().root().find(kGameControl)) setProperty(*control, "expect", 0);
 }
 }  // namespace
 
-void check(const Options& options, const Run& run) {
+namespace {
+/// Builds the world of a run; the files that it would write.
+std::vector<std::string> filesOf(const Options& options, const Run& run) {
+  const outputs::Trial trial;
   const sparkhost::Options hosted = hostOptions(options, run);
   const auto host = makeHost(hosted, run);
   build(*host, options);
+  return trial.files();
+}
+
+/// Runs that differ from the first in one thing: the value of one setting, or the seed.
+std::vector<std::int64_t> neighboursOfFirst(const Options& options, const Sweep& sweep) {
+  std::vector<std::int64_t> out;
+  std::int64_t stride = 1;  // the last parameter changes fastest
+  for (auto p = options.sweep.rbegin(); p != options.sweep.rend(); ++p) {
+    if (p->values.size() > 1) out.push_back(1 + stride);
+    stride *= static_cast<std::int64_t>(p->values.size());
+  }
+  if (options.seeds > 1) out.push_back(1 + sweep.points());
+  return out;
+}
+}  // namespace
+
+void check(const Options& options, const Sweep& sweep) {
+  const std::vector<std::string> files = filesOf(options, sweep.run(1));
+  if (files.empty()) return;
+  for (const std::int64_t other : neighboursOfFirst(options, sweep))
+    for (const std::string& file : filesOf(options, sweep.run(other)))
+      if (std::binary_search(files.begin(), files.end(), file))
+        throw Error(
+            fmt::format("runs 1 and {} would both write {}: expected a name of its own for each run. Put {{run}} "
+                        "into it, such as --set monitorLog=match-{{run}}.log",
+                        other, file));
 }
 
 Row simulate(const Options& options, const Run& run, RunControl& control) {

@@ -24,8 +24,9 @@ class RunControl {
   std::atomic<double> time_ = 0;
 };
 
-/// Builds the world of `run` and destroys it. Throws spark::Error if the config or the settings are wrong.
-void check(const Options& options, const Run& run);
+/// Builds the world of the first run and destroys it. Throws spark::Error if the config or the settings are wrong, or
+/// if two runs would write one file.
+void check(const Options& options, const Sweep& sweep);
 
 /// Simulates `run` to its end and returns its row. Does not throw: errors are in the row. Except for cpuSeconds and
 /// wallSeconds, the row depends on the options and the run only.

@@ -24,7 +24,7 @@ constexpr double kAnswer = 5;                   // s: how long the simulator may
 constexpr auto kEnd = std::chrono::seconds(2);  // that agents get to end
 
 void say(const std::string& line) {
-  fmt::print(stderr, "sparkcomm: {}\n", line);
+  std::fputs(fmt::format("sparkcomm: {}\n", line).c_str(), stderr);  // does not throw if stderr is gone
   std::fflush(stderr);
 }
 }  // namespace

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include "comm_server.h"
+#include "spark/output_file.h"
 
 namespace {
 spark::spades::CommServer* running = nullptr;
@@ -28,6 +29,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--database", options.database, "The agent database: which programs are agents")->required();
   app.add_option("--logs", options.logs, "Folder for what agents print; it is dropped without");
+  bool force = false;
+  app.add_flag("--force", force, "Replace files of --logs that exist");
   app.add_option("--token", options.token, "What the simulator wants to hear");
   app.add_option("--name", options.name, "How the simulator names this server")->capture_default_str();
   app.add_option("--patience", options.patience, "How long the simulator may be away [s]")
@@ -41,13 +44,15 @@ int main(int argc, char** argv) {
     return app.exit(e) == 0 ? 0 : 2;
   }
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);
+  spark::outputs::setReplace(force);
   try {
     spark::spades::CommServer server(options);
     running = &server;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { running->stop(); });
     return server.run() ? 0 : 1;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkcomm: {}\n", e.what());
+    std::fputs(fmt::format("sparkcomm: {}\n", e.what()).c_str(), stderr);
     return 1;
   }
 }

@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -91,6 +92,25 @@ void call(ControlConnection& simulation, const std::string& what, const std::vec
   if (!result.empty()) print(result + "\n");
 }
 
+/// Hides the minus of numbers from the parser, which takes -.5 and -inf for options.
+constexpr char kMinus = '\1';
+
+std::vector<std::string> withHiddenMinus(int argc, char** argv) {
+  std::vector<std::string> words;
+  for (int i = argc - 1; i > 0; --i) {  // the parser takes them from the back
+    std::string& word = words.emplace_back(argv[i]);
+    if (word.size() < 2 || word[0] != '-') continue;
+    char* end = nullptr;
+    std::strtod(word.c_str(), &end);
+    if (*end == 0) word[0] = kMinus;
+  }
+  return words;
+}
+
+void showMinus(std::string& word) {
+  if (!word.empty() && word[0] == kMinus) word[0] = '-';
+}
+
 void ask(ControlConnection& simulation, const std::string& what, const std::string& path) {
   Json request{{"do", what}};
   if (!path.empty()) request["path"] = path;
@@ -112,7 +132,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> arguments;
   int pid = 0, depth = -1;
   double timeout = 10, patience = 0;
-  bool all = false, links = false;
+  bool all = false, links = false, force = false;
   app.add_option("--socket", socket, "Path of the control socket, if several simulations run");
   app.add_option("--pid", pid, "Process of the simulation, if several run");
   app.add_option("--timeout", timeout, "Maximum time to wait for an answer [s]")
@@ -151,8 +171,11 @@ int main(int argc, char** argv) {
   CLI::App* snapshots =
       app.add_subcommand("snapshot", "Writes the whole simulation to a file, from which sparkhost --from FILE goes on");
   snapshots->add_option("FILE", target)->required();
+  snapshots->add_flag("--force", force, "Replace the file if it exists");
   try {
-    app.parse(argc, argv);
+    app.parse(withHiddenMinus(argc, argv));
+    showMinus(value);
+    for (std::string& argument : arguments) showMinus(argument);
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
@@ -169,7 +192,8 @@ int main(int argc, char** argv) {
     if (*loads) print(simulation.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");
     if (*unloads) simulation.ask({{"do", "unload"}, {"name", target}});
     if (*snapshots)
-      call(simulation, "/sys/host/snapshots.save", {std::filesystem::absolute(target).lexically_normal().string()});
+      call(simulation, "/sys/host/snapshots.save",
+           {std::filesystem::absolute(target).lexically_normal().string(), force ? "true" : "false"});
     if (*plugins) print(pluginsText(simulation.ask({{"do", "plugins"}})["plugins"]));
   } catch (const std::exception& e) {
     fmt::print(stderr, "sparkctl: {}\n", e.what());

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 
 #include "api/scene.h"
 #include "compare_trees.h"
 #include "host.h"
+#include "program.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 namespace sparkhost {
 
@@ -71,36 +72,24 @@ void warnOfWorld(const std::vector<std::pair<std::string, Value>>& before, Scene
   }
 }
 
-void writeFile(const std::string& file, const std::string& text) {
-  std::ofstream out(file, std::ios::binary);
-  out << text << std::flush;
-  if (!out) throw Error(fmt::format("cannot write '{}'", file));
-}
-
 }  // namespace
 
 void convert(const Options& options, const std::string& in, const std::string& out) {
+  refuseSameFile(out, in, "the file that is converted");
+  FileDraft draft(out, "the scene");
   Scene original(options);
   const auto world = original.worldValues();
   original.import(in);
   warnOfWorld(world, original);
   Leaf& writer = original.kernel().create("SceneWriter", kWriter);
-  const std::string text = callMethod(writer, "text", std::vector<Value>{kModel}).plain();
+  draft.write(callMethod(writer, "text", std::vector<Value>{kModel}).plain());
 
   // The converted file is complete, or is not there.
-  const std::string draft = out + ".draft";
-  try {
-    writeFile(draft, text);
-    Scene converted(options);
-    converted.import(draft);
-    if (const std::string found = differenceOf(original.model(), converted.model()); !found.empty())
-      throw Error(fmt::format("the scene language cannot express '{}': {}", in, found));
-    fs::rename(draft, out);
-  } catch (...) {
-    std::error_code ignored;
-    fs::remove(draft, ignored);
-    throw;
-  }
+  Scene converted(options);
+  converted.import(draft.name());
+  if (const std::string found = differenceOf(original.model(), converted.model()); !found.empty())
+    throw Error(fmt::format("the scene language cannot express '{}': {}", in, found));
+  draft.finish();
 }
 
 }  // namespace sparkhost

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
-
 #include "api/phases.h"
 #include "spark/error.h"
 #include "spark/state.h"
@@ -23,17 +20,19 @@ void HashLog::install(Kernel& kernel, const std::string& file, std::int64_t ever
   auto& log = kernel.create<HashLog>("HashLog", kPath);
   log.file_ = file;
   log.every_ = every;
-  log.out_.open(file, std::ios::binary | std::ios::trunc);
-  if (!log.out_) throw Error(fmt::format("--hashes: cannot write {}: {}", file, std::strerror(errno)));
+  log.out_ = std::make_unique<OutputFile>(file, "the hashes");
 }
 
 void HashLog::write(const Event& event) {
   if (failed_ || event.cycle % every_ != 0) return;
   const Leaf& root = kernel().root();
-  const auto line = fmt::format("{} {:016x} {:016x}\n", event.cycle, stateHash(root), configurationHash(root));
-  if (out_.write(line.data(), static_cast<std::streamsize>(line.size())).flush()) return;
-  failed_ = true;
-  kernel().log().error("--hashes: cannot write {}: it ends before cycle {}", file_, event.cycle);
+  const std::string line = fmt::format("{} {:016x} {:016x}\n", event.cycle, stateHash(root), configurationHash(root));
+  try {
+    out_->write(line);
+  } catch (const Error& e) {
+    failed_ = true;
+    kernel().log().error("--hashes: cannot write {}: it ends before cycle {}: {}", file_, event.cycle, e.what());
+  }
 }
 
 }  // namespace sparkhost

@@ -2,11 +2,12 @@
 /// \file
 /// Writes the hashes of a run to a file.
 
-#include <fstream>
+#include <memory>
 #include <string>
 
 #include "spark/describe.h"
 #include "spark/kernel.h"
+#include "spark/output_file.h"
 
 namespace sparkhost {
 
@@ -22,7 +23,7 @@ class HashLog : public spark::Node {
 
  private:
   void write(const spark::Event& event);
-  std::ofstream out_;
+  std::unique_ptr<spark::OutputFile> out_;
   std::string file_;
   std::int64_t every_ = 1;
   bool failed_ = false;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 
@@ -76,32 +77,87 @@ void Host::defineHostTable() {
                                           List{"scenePaths", std::move(scenePaths)}, List{"alone", options_.alone}});
 }
 
+/// Files of a recording, and folders that the user adds to those of its run, come before those of the config: the tree
+/// of the simulation stays the recorded one.
+void Host::mountFiles() {
+  if (options_.files.empty()) return;
+  constexpr const char* kFiles = "/sys/host/files";
+  kernel_.plugins().use("files");
+  kernel_.create("FileServer", kFiles);
+  int number = 0;
+  const auto mount = [&](const std::string& folder) {
+    setProperty(kernel_.create("DirectoryFileSystem", fmt::format("{}/{}", kFiles, ++number)), "path", folder);
+  };
+  mount(options_.files);
+  for (const std::string& folder : options_.moreScenePaths) mount(folder);
+}
+
+/// The command line for recordings and snapshots.
+std::vector<std::string> Host::arguments() { return withoutSecrets(options_.arguments, scripts(kernel_).secrets()); }
+
+/// Names the secrets that the recorded run had, and that this one has not.
+void Host::warnOfSecrets() {
+  for (const std::string& name : scripts(kernel_).secrets()) {
+    const auto set = std::find_if(options_.overrides.rbegin(), options_.overrides.rend(),
+                                  [&name](const auto& o) { return o.first == name; });
+    const bool recorded = options_.overrides.rend() - set <= static_cast<std::ptrdiff_t>(options_.fromOverrides);
+    if (set == options_.overrides.rend() || !recorded) continue;
+    kernel_.log().warning("the recorded run had a {0}, which is a secret and in no recording: say --set {0}=...", name);
+  }
+}
+
 void Host::build() {
+  for (const std::string& note : options_.notes) kernel_.log().warning("{}", note);
   scripts(kernel_).addFolder(share_ / "lua");
+  if (!options_.share.empty()) scripts(kernel_).setWorkingFolder(share_ / "lua");
+  mountFiles();
   defineHostTable();
   if (options_.check) scripts(kernel_).warnOfUnsaved();
   for (const auto& [key, value] : options_.overrides) scripts(kernel_).addOverride(key, value);
   if (options_.replay) {  // what the config makes shall know it
     kernel_.plugins().use("recorder");
     kernel_.create<Leaf>("InputPlayer", kTape);
+  } else if (!options_.record.empty()) {  // so that settings of the tape have an effect
+    kernel_.plugins().use("recorder");
+    kernel_.create<Leaf>("Recorder", kTape);
   }
   scripts(kernel_).runConfig(options_.config);
+  if (!options_.from.empty()) warnOfSecrets();
   applySwitches(0);
   if (!kernel_.root().find("/plugins/recorder")) return;
   kernel_.plugins().use("recorder");
   Leaf* snapshots = kernel_.root().find(ISnapshots::kPath);
   if (!snapshots) snapshots = &kernel_.create<Leaf>("Snapshots", ISnapshots::kPath);
-  setProperty(*snapshots, "arguments", List(options_.arguments.begin(), options_.arguments.end()));
+  const auto words = arguments();
+  setProperty(*snapshots, "arguments", List(words.begin(), words.end()));
 }
 
 void Host::goOn() {
   auto* const snapshots = kernel_.root().find<ISnapshots>();
   if (!snapshots) throw Error("--from: expected the plugin recorder, found none. Add its folder by --plugin-path");
-  snapshots->load(options_.from, options_.at, options_.branch);
+  if (options_.state) {
+    for (const ForkState::Text& t : options_.state->texts) kernel_.sources().add(t.kind, t.name, t.text);
+    const Snapshot state = snapshots->read(options_.state->bytes);
+    snapshots->restore(state, options_.branch);
+    kernel_.log().info("The run goes on from {} at {} s: cycle {}.", options_.from, options_.state->time, state.cycle);
+  } else {
+    snapshots->load(options_.from, options_.at, options_.branch);
+  }
   for (std::size_t i = options_.fromOverrides; i < options_.overrides.size(); ++i)
     scripts(kernel_).addOverride(options_.overrides[i].first, options_.overrides[i].second);
   scripts(kernel_).applyOverrides();
   applySwitches(options_.fromSwitches);
+  if (const std::string over = overAlready(); !over.empty()) kernel_.log().warning("{}", over);
+}
+
+std::string Host::overAlready() {
+  const Leaf& root = kernel_.root();
+  const double end = numberAt(root, kSimulation, "duration"), now = numberAt(root, kSimulation, "time");
+  if (end <= 0 || end >= now + 0.5 * numberAt(root, kSimulation, "step")) return {};
+  return fmt::format(
+      "--duration {0}: the run goes on at {1:.2f} s already, so it has no cycle. It is the time at which a run ends, "
+      "counted from its start: for {0} s more it is {2:.2f}",
+      end, now, now + end);
 }
 
 /// Sets the properties of switches, from the one with that index on.
@@ -120,10 +176,12 @@ void Host::applySwitches(std::size_t first) {
 }
 
 void Host::record(const std::string& file) {
-  kernel_.plugins().use("recorder");
-  Leaf& tape = kernel_.create<Leaf>("Recorder", kTape);
-  List arguments(options_.arguments.begin(), options_.arguments.end());
-  callMethod(tape, "record", std::vector<Value>{file, std::move(arguments)});
+  const auto words = arguments();
+  callMethod(kernel_.root().require<Leaf>(kTape), "record", std::vector<Value>{file, List(words.begin(), words.end())});
+}
+
+void Host::discardRecording() {
+  if (Leaf* const tape = kernel_.root().find(kTape)) callMethod(*tape, "discard", {});
 }
 
 Leaf& Host::play(const std::string& file) {

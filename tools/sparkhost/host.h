@@ -25,8 +25,12 @@ class Host {
   void build();
   /// After build(): goes on from the state of options.from.
   void goOn();
-  /// Records to the file, from now on.
+  /// After goOn(): a sentence if the duration is over already; else "".
+  std::string overAlready();
+  /// Records to the file, from now on. Precondition: options.record.
   void record(const std::string& file);
+  /// Removes the file of record() again, if it is new: there is no run.
+  void discardRecording();
   /// Plays a recording from now on, instead of opening ports; the node that plays it. Precondition: options.replay.
   spark::Leaf& play(const std::string& file);
   /// Opens the ports and returns the first line of stdout.
@@ -38,6 +42,9 @@ class Host {
 
  private:
   void scanPlugins();
+  void mountFiles();
+  void warnOfSecrets();
+  std::vector<std::string> arguments();
   void defineHostTable();
   void applySwitches(std::size_t first);
 

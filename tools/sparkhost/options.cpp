@@ -17,39 +17,46 @@ std::pair<std::string, spark::Value> splitOverride(const std::string& text) {
   return {text.substr(0, at), spark::Value::typed(std::string_view(text).substr(at + 1))};
 }
 
-void makeAbsolute(std::vector<std::string>& folders) {
-  for (std::string& f : folders) f = std::filesystem::absolute(f).lexically_normal().string();
-}
-
 /// Options that a run which goes on from a file does not take from it, each with one value.
 constexpr std::string_view kOfOneRun[] = {"--record", "--from", "--at", "--hashes", "--hash-every", "--log-level"};
 
-/// Options whose values are secrets. A run that goes on makes up new ones.
-constexpr std::string_view kSecrets[] = {"webToken=", "remoteToken="};
-
-/// The word without the value of a secret.
-std::string withoutSecret(std::string_view word) {
-  for (const std::string_view secret : kSecrets)
-    if (const auto at = word.find(secret); at != std::string_view::npos) word = word.substr(0, at + secret.size());
-  return std::string(word);
-}
-
-/// The words that build the same simulation, without secrets.
+/// The words that build the same simulation, whose folders are absolute.
 std::vector<std::string> lasting(int argc, char** argv) {
   std::vector<std::string> out;
+  const auto absolute = [](std::string_view folder) {
+    return std::filesystem::absolute(folder).lexically_normal().string();
+  };
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i], name = word.substr(0, word.find('='));
-    if (std::find(std::begin(kOfOneRun), std::end(kOfOneRun), name) != std::end(kOfOneRun))
+    if (std::find(std::begin(kOfOneRun), std::end(kOfOneRun), name) != std::end(kOfOneRun)) {
       i += name == word;
-    else if (word != "--histogram")
-      out.push_back(withoutSecret(word));
+    } else if (name == "--plugin-path" || name == "--scene-path") {
+      const bool apart = name == word;
+      out.emplace_back(name);
+      if (apart && ++i >= argc) break;
+      out.push_back(absolute(apart ? std::string_view(argv[i]) : word.substr(name.size() + 1)));
+    } else if (word != "--histogram" && word != "--force") {
+      out.emplace_back(word);
+    }
   }
   return out;
 }
-
 }  // namespace
 
-std::optional<int> readOptions(int argc, char** argv, Options& out) {
+std::vector<std::string> withoutSecrets(std::vector<std::string> words, const std::vector<std::string>& secrets) {
+  constexpr std::string_view kSet = "--set";
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const bool apart = words[i] == kSet && i + 1 < words.size();
+    if (!apart && !words[i].starts_with("--set=")) continue;
+    std::string& word = words[apart ? ++i : i];
+    const std::size_t key = apart ? 0 : kSet.size() + 1, end = word.find('=', key);
+    if (end != std::string::npos && std::count(secrets.begin(), secrets.end(), word.substr(key, end - key)) > 0)
+      word.resize(end + 1);
+  }
+  return words;
+}
+
+std::optional<int> readOptions(int argc, char** argv, Options& out, std::string* problem) {
   CLI::App app{"Runs a Spark config: a Lua file that creates and connects nodes of plugins.", "sparkhost"};
   std::vector<std::string> sets;
   std::optional<std::string> rate;
@@ -74,7 +81,8 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--expect", expect, "Hold the clock until N agents have named robot and team")
       ->type_name("N")
       ->check(CLI::NonNegativeNumber);
-  app.add_option("--duration", duration, "End after this simulated time [s]; 0: never")
+  app.add_option("--duration", duration,
+                 "End at this simulated time [s], counted from the start also with --from; 0: never")
       ->type_name("SECONDS")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--agent-port", agentPort, "TCP port of agents (default 3100); 0 picks a free one")
@@ -86,7 +94,9 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   app.add_option("--web-port", webPort, "TCP port of the page for browsers (default 3280); 0 picks a free one")
       ->type_name("P")
       ->check(CLI::Range(0, 65535));
-  addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel, "Minimum level of log lines on stderr");
+  addCommonOptions(app, out.pluginPaths, out.scenePaths, out.logLevel, "Minimum level of log lines on stderr",
+                   !problem);
+  addForce(app, out.force);
   app.add_flag(
       "--check", out.check,
       "Run the config and import scenes, but no cycle; exit code 0, or 2 after errors, including those of scenes "
@@ -108,7 +118,9 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
                    ->type_name("FILE")
                    ->check(CLI::ExistingFile)
                    ->excludes("--config");
-  app.add_option("--at", out.at, "With --from: not from a later state than at this simulated time [s]")
+  app.add_option(
+         "--at", out.at,
+         "With --from a recording: go on from this simulated time [s], which is simulated from the last state before")
       ->type_name("SECONDS")
       ->needs(from);
   app.add_option("--convert", out.convert,
@@ -137,6 +149,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
     if (out.config.empty() && out.from.empty() && !out.listPlugins && out.describe.empty())
       throw CLI::RequiredError("--config");
   } catch (const CLI::ParseError& e) {
+    if (problem) return *problem = e.what(), kUsageError;
     return app.exit(e) == 0 ? 0 : kUsageError;
   }
   const auto put = [&](const char* flag, const char* path, const char* property, spark::Value v, const char* missing) {
@@ -160,7 +173,7 @@ std::optional<int> readOptions(int argc, char** argv, Options& out) {
   makeAbsolute(out.pluginPaths);
   makeAbsolute(out.scenePaths);
   if (!out.from.empty()) {
-    // A run that goes on works in a folder of its own.
+    // Messages name them as others do.
     for (std::string* file : {&out.from, &out.record, &out.hashes})
       if (!file->empty()) *file = std::filesystem::absolute(*file).string();
   }

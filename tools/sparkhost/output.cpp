@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 
 namespace {
@@ -22,6 +23,16 @@ void sparkhost::reserveStdout() {
   if (!reserved || dup2(STDERR_FILENO, STDOUT_FILENO) < 0) return;
   // Lines appear where they are printed, between those of the log.
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
+}
+
+void sparkhost::survivePoorOutputs() {
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+void sparkhost::printError(const std::string& text) noexcept {
+  std::fputs(text.c_str(), stderr);
+  std::fflush(stderr);
 }
 
 bool sparkhost::printOut(const std::string& text) {

@@ -19,6 +19,8 @@
 #include "output.h"
 #include "recorded_run.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
+#include "state_at.h"
 #include "status_line.h"
 
 // Exit codes: 0: success; 1: the run failed, or stdout could not be written; 2: an error in the command line, the
@@ -70,7 +72,6 @@ void sparkhost::watchSignals(spark::Kernel& kernel) {
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, &before);
   if (before.sa_handler == SIG_IGN) sigaction(SIGHUP, &before, nullptr);
-  std::signal(SIGPIPE, SIG_IGN);
 }
 
 namespace {
@@ -78,8 +79,8 @@ namespace {
 /// Prints a line to stdout. On error prints a message to stderr and returns false; the run continues.
 bool printLine(const std::string& line) {
   if (sparkhost::printOut(line + '\n')) return true;
-  fmt::print(stderr, "sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno),
-             line);
+  sparkhost::printError(
+      fmt::format("sparkhost: cannot write to stdout ({}); this line is lost there: {}\n", std::strerror(errno), line));
   return false;
 }
 
@@ -94,7 +95,7 @@ void orExit(int code, F step) {
   try {
     step();
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkhost: {}\n", e.what());
+    sparkhost::printError(fmt::format("sparkhost: {}\n", e.what()));
     throw Exit{code};
   }
 }
@@ -119,14 +120,15 @@ bool runSimulation(sparkhost::Host& host, const std::string& firstLine, bool his
   sparkhost::StatusLine::install(host.kernel(), terminal);
   printLine(firstLine);
   const std::string lastLine = host.run();
-  if (terminal) fmt::print(stderr, "\n");
-  if (histogram) fmt::print(stderr, "{}", host.histogram());
+  if (terminal) sparkhost::printError("\n");
+  if (histogram) sparkhost::printError(host.histogram());
   return printLine(lastLine);
 }
 
 int run(int argc, char** argv) {
   using namespace sparkhost;
   installCrashReport("sparkhost");
+  survivePoorOutputs();
   Options options;
   if (const auto code = readOptions(argc, argv, options)) return *code;
   reserveStdout();
@@ -137,8 +139,14 @@ int run(int argc, char** argv) {
     refuseSameFile(options.record, options.from, "what the run goes on from");
     refuseSameFile(options.hashes, options.from, "what the run goes on from");
     refuseSameFile(options.record, options.hashes, "the file of the hashes");
+    spark::outputs::setReplace(options.force);
     if (!options.from.empty()) options = recorded.emplace(options.from).options(options);
     if (!options.convert.empty()) return convert(options, options.convert[0], options.convert[1]);
+    if (!options.record.empty()) spark::outputs::check(options.record, "the recording");
+    if (!options.hashes.empty()) spark::outputs::check(options.hashes, "the hashes");
+    if (recorded && std::isfinite(options.at)) options.state = stateAt(*recorded, options);
+    std::optional<spark::outputs::Trial> trial;
+    if (options.check) trial.emplace();
     host.emplace(options);
     if (options.config.empty()) return printDescriptions(host->kernel(), options);
     watchSignals(host->kernel());
@@ -151,7 +159,13 @@ int run(int argc, char** argv) {
     if (options.check) checkLog(host->kernel());
     if (!options.hashes.empty()) HashLog::install(host->kernel(), options.hashes, options.hashEvery);
     if (!options.record.empty()) host->record(options.record);
-    if (!options.check) firstLine = host->open();
+    if (options.check) return;
+    try {
+      firstLine = host->open();
+    } catch (...) {
+      host->discardRecording();
+      throw;
+    }
   });
   bool written = true;
   if (!firstLine.empty()) orExit(1, [&] { written = runSimulation(*host, firstLine, options.histogram); });

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "options.h"
+#include "output.h"
 #include "program.h"
 
 // sparkhost with the command line of rcssserver3d and simspark. It runs in this process, so that scripts which kill it
@@ -19,9 +20,9 @@ std::string configFor(const std::string& script) {
   if (path.extension() == ".lua") return script;
   if (path.stem().string().find("spl") != std::string::npos) return "soccer-spl.lua";
   if (!script.empty())
-    fmt::print(stderr,
-               "{} is a Ruby script, which is not run: soccer.lua stands for it. A Lua config may be named instead.\n",
-               script);
+    sparkhost::printError(fmt::format(
+        "{} is a Ruby script, which is not run: soccer.lua stands for it. A Lua config may be named instead.\n",
+        script));
   return "soccer.lua";
 }
 

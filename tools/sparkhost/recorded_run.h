@@ -12,22 +12,22 @@
 
 namespace sparkhost {
 
-/// The file of such a run. As long as it lives its scripts and scenes stand in a folder, which becomes the working
-/// folder of the program.
+/// The file of such a run. As long as it lives its scripts and scenes are in a folder.
 class RecordedRun {
  public:
   /// Throws Error if the file is none of sparkhost.
   explicit RecordedRun(const std::string& file);
 
-  /// The options of the host that builds it. `own`: of this program, which add to them or replace them.
+  /// The options of the host that builds it. `own`: of this program, which add to them or replace them. From then on
+  /// this process writes, and starts, only what `own` names.
   Options options(const Options& own) const;
   /// The command line of the recorded host.
   const std::vector<std::string>& arguments() const { return arguments_; }
-  spark::mcap::Reader& recording() { return recording_; }
+  const std::string& file() const { return file_; }
+  const spark::mcap::Reader& recording() const { return recording_; }
   const RecordedFiles& files() const { return files_; }
 
  private:
-  std::filesystem::path folder_;  ///< the working folder of before
   std::string file_;
   spark::mcap::Reader recording_;
   std::vector<std::string> arguments_;

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "api/phases.h"
+#include "output.h"
 #include "status_text.h"
 #include "tree_values.h"
 
@@ -38,7 +39,7 @@ void StatusLine::install(Kernel& kernel, bool terminal) {
   line.next_ = line.last_ + kTerminalPeriod;
   if (terminal)
     kernel.log().setSink([](Level level, std::string_view text) {
-      fmt::print(stderr, "\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text);
+      sparkhost::printError(fmt::format("\r\033[K{:<7} {}\n", kNames[static_cast<int>(level)], text));
     });
 }
 
@@ -59,7 +60,7 @@ void StatusLine::show(const Event& event) {
   const double factor = (event.time - lastTime_) / std::chrono::duration<double>(now - last_).count();
   const std::string line = text(event.time, factor);
   if (terminal_) {
-    fmt::print(stderr, "\r\033[K{}", line);
+    sparkhost::printError(fmt::format("\r\033[K{}", line));
     std::fflush(stderr);
   } else {
     kernel().log().info("{}", line);

@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
+#include <memory>
 #include <set>
 
 #include "api/phases.h"
@@ -15,6 +13,7 @@
 #include "recorded_run.h"
 #include "spark/describe.h"
 #include "spark/error.h"
+#include "spark/output_file.h"
 
 namespace sparkreplay {
 
@@ -24,16 +23,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::string_view kStates = "/spark/states";
-
-std::ofstream opened(const std::string& file) {
-  std::ofstream out(file, std::ios::binary | std::ios::trunc);
-  if (!out) throw Error(fmt::format("cannot write {}: {}", file, std::strerror(errno)));
-  return out;
-}
-
-void finish(std::ofstream& out, const std::string& file) {
-  if (!out.flush()) throw Error(fmt::format("cannot write {}: {}", file, std::strerror(errno)));
-}
 
 mcap::Time nanoseconds(double seconds) {
   return std::isfinite(seconds) ? static_cast<mcap::Time>(std::llround(seconds * 1e9)) : INT64_MAX;
@@ -56,9 +45,8 @@ mcap::Time beginOf(mcap::Reader& reader, mcap::Time from) {
 std::int64_t cut(const Export& what) {
   mcap::Reader reader(what.file);
   const mcap::Time begin = beginOf(reader, nanoseconds(what.from)), end = nanoseconds(what.to);
-  std::ofstream out = opened(what.out);
-  mcap::Writer writer([&out](std::string_view b) { out.write(b.data(), static_cast<std::streamsize>(b.size())); },
-                      "Spark");
+  OutputFile out(what.out, "the export");
+  mcap::Writer writer([&out](std::string_view b) { out.write(b); }, "Spark");
   for (const auto& [number, schema] : reader.schemas()) writer.schema(schema);
   for (const auto& [number, channel] : reader.channels()) writer.channel(channel);
   for (const auto& [name, values] : reader.metadata()) writer.metadata(name, values);
@@ -78,7 +66,6 @@ std::int64_t cut(const Export& what) {
       return true;
     });
   writer.finish();
-  finish(out, what.out);
   return messages;
 }
 
@@ -92,17 +79,13 @@ class Table : public Node {
   }
   void begin(const Export& what) {
     what_ = &what;
-    out_ = opened(what.out);
-    out_ << "time";
-    for (const std::string& p : what.properties) {
-      if (p.empty() || p.front() != '/' || p.rfind('.') == std::string::npos || p.rfind('.') < p.rfind('/'))
-        throw Error(fmt::format("expected /path.property for a column, found '{}'", p));
-      out_ << ',' << p;
-    }
-    out_ << '\n';
+    out_ = std::make_unique<OutputFile>(what.out, "the table");
+    std::string head = "time";
+    for (const std::string& p : what.properties) head += ',' + p;
+    out_->write(head + '\n');
   }
   std::int64_t end() {
-    finish(out_, what_->out);
+    if (!failure_.empty()) throw Error(fmt::format("cannot write the table {}: {}", what_->out, failure_));
     for (const std::string& p : what_->properties)
       if (rows_ > 0 && !found_.contains(p))
         throw Error(fmt::format("there was no {} at any time: see sparkctl tree, and sparkhost --describe CLASS", p));
@@ -114,7 +97,7 @@ class Table : public Node {
     const double time = event.time;
     constexpr double kTolerance = 1e-6;  // s: time is a sum of steps
     if (time < what_->from - kTolerance || time > what_->to + kTolerance) return;
-    out_ << fmt::format("{:.3f}", time);
+    std::string line = fmt::format("{:.3f}", time);
     for (const std::string& p : what_->properties) {
       const std::size_t dot = p.rfind('.');
       const Leaf* const node = kernel().root().find(p.substr(0, dot));  // it may come and go
@@ -126,13 +109,18 @@ class Table : public Node {
         text.insert(0, 1, '"');
         text += '"';
       }
-      out_ << ',' << text;
+      line += ',' + text;
     }
-    out_ << '\n';
+    try {
+      if (failure_.empty()) out_->write(line + '\n');
+    } catch (const Error& e) {
+      failure_ = e.what();
+    }
     ++rows_;
   }
   const Export* what_ = nullptr;
-  std::ofstream out_;
+  std::unique_ptr<OutputFile> out_;
+  std::string failure_;  ///< why the file ends early
   std::int64_t rows_ = 0;
   std::set<std::string> found_;  ///< columns whose property was there
 };
@@ -159,6 +147,7 @@ std::int64_t simulate(const Export& what, Prepare prepare, Done done) {
   sparkhost::RecordedRun recorded(what.file);
   sparkhost::Options own;
   own.logLevel = what.logLevel;
+  own.pluginPaths = what.pluginPaths, own.scenePaths = what.scenePaths;
   own.replay = true;
   const sparkhost::Options options = recorded.options(own);
   sparkhost::Host host(options);
@@ -208,14 +197,19 @@ std::int64_t monitorLog(const Export& what) {
 
 std::int64_t write(const Export& given) {
   Export what = given;
-  what.out = fs::absolute(what.out).string();  // simulating works in a folder of its own
+  what.out = fs::absolute(what.out).string();
   if (what.to < what.from)
     throw Error(fmt::format("expected --to not before --from, found {} and {}", what.to, what.from));
   sparkhost::refuseSameFile(what.out, what.file, "the recording that is read");
   const std::string extension = fs::path(what.out).extension();
   const bool isTable = extension == ".csv";
   if (!isTable && !what.properties.empty()) throw Error("--property is for tables: --export FILE.csv");
-  if (extension != ".mcap") opened(what.out);  // a wrong name is told before the simulation
+  for (const std::string& p : what.properties)
+    if (p.empty() || p.front() != '/' || p.rfind('.') == std::string::npos || p.rfind('.') < p.rfind('/'))
+      throw Error(fmt::format("expected /path.property for a column, found '{}'", p));
+  outputs::setReplace(what.force);
+  outputs::permit(what.out);
+  if (extension != ".mcap") OutputFile(what.out, "the export");  // a wrong name is told before the simulation
   const std::int64_t written = extension == ".mcap" ? cut(what) : isTable ? table(what) : monitorLog(what);
   if (written == 0) throw Error(fmt::format("{} has nothing between {} and {} s", what.file, what.from, what.to));
   return written;

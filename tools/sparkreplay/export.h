@@ -14,6 +14,8 @@ struct Export {
   std::vector<std::string> properties;  ///< columns of a table: "/path.property" each
   double from = 0, to = HUGE_VAL;       ///< simulated time [s]
   std::string logLevel = "warning";
+  std::vector<std::string> pluginPaths, scenePaths;  ///< absolute, existing folders of the user
+  bool force = false;                                ///< a file that exists may be replaced
 };
 
 /// Writes the file: .mcap: the part of the recording from the newest state up to `from`; .csv: a row for each cycle

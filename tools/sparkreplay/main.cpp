@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "common_options.h"
 #include "crash_report.h"
 #include "export.h"
 #include "hang_watch.h"
@@ -68,9 +69,9 @@ std::optional<int> read(int argc, char** argv, Arguments& out) {
       ->type_name("/PATH.PROPERTY")
       ->needs(exported)
       ->allow_extra_args(false);
-  app.add_option("--log-level", out.logLevel, "Minimum level of log lines on stderr")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warning", "error", "off"}))
-      ->capture_default_str();
+  sparkhost::addForce(app, out.out.force)->needs(exported);
+  sparkhost::addCommonOptions(app, out.out.pluginPaths, out.out.scenePaths, out.logLevel,
+                              "Minimum level of log lines on stderr");
   app.footer(
       "stdout: one JSON line; without --verify, --play and --export it tells what the recording holds. Exit code 0: "
       "done; 1: the simulation differs from the recording; 2: the command line or the recording is wrong. While a "
@@ -83,6 +84,8 @@ std::optional<int> read(int argc, char** argv, Arguments& out) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : 2;
   }
+  sparkhost::makeAbsolute(out.out.pluginPaths);
+  sparkhost::makeAbsolute(out.out.scenePaths);
   return std::nullopt;
 }
 
@@ -97,10 +100,11 @@ Json describe(const std::string& file, const spark::mcap::Reader& recording) {
 }
 
 /// Simulates the recorded run again. Returns the line for stdout, and whether it is the same.
-std::pair<Json, bool> verify(const std::string& file, double from, const std::string& logLevel) {
+std::pair<Json, bool> verify(const Arguments& arguments, const std::string& file) {
   sparkhost::RecordedRun recorded(file);
   sparkhost::Options own;
-  own.logLevel = logLevel;
+  own.logLevel = arguments.logLevel;
+  own.pluginPaths = arguments.out.pluginPaths, own.scenePaths = arguments.out.scenePaths;
   own.replay = true;
   const sparkhost::Options options = recorded.options(own);
   sparkhost::Host host(options);
@@ -108,8 +112,8 @@ std::pair<Json, bool> verify(const std::string& file, double from, const std::st
   host.build();
   spark::Leaf& tape = host.play(file);
   sparkhost::watchSignals(host.kernel());
-  if (from > 0) {
-    const spark::Value at(from);
+  if (arguments.from > 0) {
+    const spark::Value at(arguments.from);
     spark::callMethod(tape, "seek", std::span(&at, 1));
   }
   host.run();
@@ -170,8 +174,7 @@ int run(int argc, char** argv) {
     return 0;
   }
   const spark::mcap::Reader recording(file);
-  const auto [line, same] =
-      arguments.verify ? verify(file, arguments.from, arguments.logLevel) : std::pair(describe(file, recording), true);
+  const auto [line, same] = arguments.verify ? verify(arguments, file) : std::pair(describe(file, recording), true);
   print(line);
   return same ? 0 : 1;
 }
@@ -181,6 +184,7 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     sparkhost::installCrashReport("sparkreplay");
+    sparkhost::survivePoorOutputs();
     return run(argc, argv);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "sparkreplay: %s\n", e.what());

@@ -318,6 +318,14 @@ bool LoadedLibrary::hasChanged() const {
   return fs::exists(path_, ec) && !(FileStamp::of(path_) == stamp_);
 }
 
+bool LoadedLibrary::hasChanged(const std::string& path) {
+  const std::lock_guard lock(libraryMutex());
+  return std::any_of(libraries().begin(), libraries().end(), [&path](const auto& weak) {
+    const auto library = weak.lock();
+    return library && library->path_ == path && library->hasChanged();
+  });
+}
+
 const void* LoadedLibrary::symbol(const char* name) const {
   const std::lock_guard lock(libraryMutex());
   return lt_dlsym(static_cast<lt_dlhandle>(handle_), name);

@@ -41,6 +41,8 @@ class LoadedLibrary {
   const void* symbol(const char* name) const;
   /// True if the path now has a file of another version.
   bool hasChanged() const;
+  /// True if that is so for a library that was loaded from the path. Thread safe.
+  static bool hasChanged(const std::string& path);
 
  private:
   explicit LoadedLibrary(const std::string& path) : path_(path) {}

@@ -12,6 +12,7 @@
 #include "loaded_library.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/other_code.h"
 #include "spark/running.h"
 #include "tree.h"
 
@@ -106,6 +107,11 @@ bool isPluginName(std::string_view name) {
                      [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_' || c == '.'; });
 }
 
+/// True if of two files in one folder only the first one has that name.
+bool isNamedAs(const fs::path& file, const fs::path& other, std::string_view name) {
+  return file.parent_path() == other.parent_path() && file.stem() == name && other.stem() != name;
+}
+
 /// The text, "" for nullptr.
 const char* textOf(const char* text) { return text ? text : ""; }
 
@@ -187,8 +193,16 @@ Plugin& Loader::open(const fs::path& file) {
   refuseBuild(headersProblem(*d));
   if (!isPluginName(textOf(d->name)))
     refuse(fmt::format("its name '{}' is none: letters, digits, '-', '_' and '.' make one", textOf(d->name)));
-  if (Leaf* other = kernel_.tree().plugins->child(d->name))
-    refuse(fmt::format("there is a plugin '{}' already, from {}", d->name, static_cast<Plugin*>(other)->file_));
+  if (Leaf* const other = kernel_.tree().plugins->child(d->name)) {
+    Plugin& first = static_cast<Plugin&>(*other);
+    const auto refusal = [&](const std::string& used) {
+      return fmt::format("there is a plugin '{}' already, from {}", d->name, used);
+    };
+    // Of two files in a folder, such as lamp-old.so and lamp.so, the one with the plugin's name is the plugin.
+    if (first.registered_ || !isNamedAs(path, first.file_, d->name)) refuse(refusal(first.file_));
+    kernel_.log().warning("refused plugin {}: {}", first.file_, refusal(path));
+    close(first);
+  }
 
   auto made = kernel_.classOf("Plugin").create();
   made->setName(d->name);
@@ -293,6 +307,8 @@ Plugin* Loader::openAgain(std::string_view name) {
     }
   return nullptr;
 }
+
+bool hasOtherCode(const Plugin& plugin) { return LoadedLibrary::hasChanged(plugin.file()); }
 
 Plugin& Loader::useFile(const fs::path& file) {
   Plugin* known = fromFile(file);

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -277,6 +280,12 @@ struct Style {
   DoubleRange doubles;
 };
 
+/// The shortest digits that are read back as the same number.
+char* putShortest(char* at, double v) {
+  if (std::isnan(v)) return std::copy_n("nan", 3, at);
+  return std::to_chars(at, at + kFixedRoom, v).ptr;
+}
+
 /// Writes the elements of tokens [t, end), separated by blanks. `at` must have kTokenRoom bytes available, and so has
 /// the returned pointer. The pointer is passed by value so that it stays in a register; the writer's own position would
 /// be stored and loaded for each byte.
@@ -297,7 +306,7 @@ char* writeElements(const Predicates& from, const Token* t, const Token* end, co
         }
         break;
       case Token::Kind::number:
-        at = putFixed(at, t->number, style.decimals, style.doubles);
+        at = style.decimals < 0 ? putShortest(at, t->number) : putFixed(at, t->number, style.decimals, style.doubles);
         break;
       case Token::Kind::integer:
         out.end(at);

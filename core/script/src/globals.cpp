@@ -55,7 +55,7 @@ int remove(lua_State* L) {
 }
 
 int option(lua_State* L) {
-  static const std::vector<std::string> known{"name", "default", "doc", "choices"};
+  static const std::vector<std::string> known{"name", "default", "doc", "choices", "secret"};
   if (!lua_istable(L, 1))
     throw Error(fmt::format(
         "option expected a table: option{{name = \"agents\", default = 11, doc = \"...\"}}, found a {}", typeAt(L, 1)));
@@ -66,7 +66,7 @@ int option(lua_State* L) {
     std::string key;
     appendText(L, -2, key);
     if (std::find(known.begin(), known.end(), key) == known.end())
-      throw Error(fmt::format("option knows no field '{}'.{} It has name, default, doc and choices.", key,
+      throw Error(fmt::format("option knows no field '{}'.{} It has name, default, doc, choices and secret.", key,
                               didYouMean(key, known)));
   }
 
@@ -81,7 +81,9 @@ int option(lua_State* L) {
   if (choices.isNil()) choices = List{};
   if (!choices.isList())
     throw Error(fmt::format("option '{}' expected a list of choices, found {}", name, choices.text()));
-  pushValue(L, State::of(L).runtime().settings.declare(name, defaultValue, doc, choices.toList()));
+  lua_getfield(L, 1, "secret");
+  const bool secret = lua_toboolean(L, -1) != 0;
+  pushValue(L, State::of(L).runtime().settings.declare(name, defaultValue, doc, choices.toList(), secret));
   return 1;
 }
 

@@ -8,6 +8,7 @@
 
 #include "environment.h"
 #include "restore.h"
+#include "spark/output_file.h"
 #include "unsaved.h"
 #include "values.h"
 
@@ -28,7 +29,7 @@ void Runtime::close() {
 
 // The user chooses the config, so the working folder is searched first.
 Script Runtime::readConfig(std::string_view file) {
-  std::vector<fs::path> places{fs::current_path()};
+  std::vector<fs::path> places{userFolder()};
   if (inConfig) places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
   return read(file, "config", places);
@@ -44,6 +45,8 @@ Script Runtime::readInclude(std::string_view file, lua_State* includer) {
   places.insert(places.end(), folders.begin(), folders.end());
   return read(file, "script", places);
 }
+
+fs::path Runtime::userFolder() const { return workingFolder.empty() ? fs::current_path() : workingFolder; }
 
 /// The folder of the script that called the running C function; empty if there is none, or the script is not a file.
 fs::path Runtime::folderOf(lua_State* L) const {
@@ -67,6 +70,7 @@ Script Runtime::read(std::string_view file, std::string_view what, std::vector<f
       std::string text{std::istreambuf_iterator<char>(in), {}};
       if (!in) throw Error(fmt::format("cannot read {} {}: no permission?", what, path.string()));
       origins_[fmt::format("@{}", file)] = path.parent_path();
+      outputs::keep(path.string());
       return {path, std::move(text)};
     }
     looked.push_back(place.string());
@@ -153,7 +157,7 @@ void Runtime::attachFile(Leaf& node, std::string_view file, lua_State* from, con
   if (const auto beside = folderOf(from); !beside.empty()) places.push_back(beside);
   if (!configFolder.empty()) places.push_back(configFolder);
   places.insert(places.end(), folders.begin(), folders.end());
-  places.push_back(fs::current_path());
+  places.push_back(userFolder());
   attach(node, read(file, "script", places).text, fmt::format("@{}", file), true, pushArguments);
 }
 

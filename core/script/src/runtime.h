@@ -67,6 +67,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   Kernel& kernel;
   Settings settings;
   std::vector<std::filesystem::path> folders;                ///< searched for scripts
+  std::filesystem::path workingFolder;                       ///< of the user; empty: that of the process
   std::shared_ptr<State> trusted;                            ///< the state of all trusted scripts
   std::vector<std::weak_ptr<State>> sandboxes;               ///< the states of untrusted scripts
   Memory memory;                                             ///< what scripts keep
@@ -79,6 +80,7 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
  private:
   Script read(std::string_view file, std::string_view what, std::vector<std::filesystem::path> places);
   std::filesystem::path folderOf(lua_State* L) const;
+  std::filesystem::path userFolder() const;
   bool isChannel(std::string_view name) const;
   std::string nearChannels(std::string_view name) const;
 

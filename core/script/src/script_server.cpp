@@ -42,6 +42,7 @@ void ScriptServer::loadState(StateReader& in) {
 // A script may remove the script server, so every function that runs one keeps the runtime until it returns.
 
 void ScriptServer::addFolder(fs::path folder) { impl_->folders.push_back(std::move(folder)); }
+void ScriptServer::setWorkingFolder(fs::path folder) { impl_->workingFolder = std::move(folder); }
 void ScriptServer::addOverride(std::string key, Value value) { impl_->settings.add(std::move(key), std::move(value)); }
 
 void ScriptServer::applyOverrides() { impl_->settings.apply(); }
@@ -83,5 +84,6 @@ void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_vie
 void ScriptServer::warnOfUnsaved() { impl_->warnsOfUnsaved = true; }
 
 std::vector<List> ScriptServer::options() const { return impl_->settings.options(); }
+std::vector<std::string> ScriptServer::secrets() const { return impl_->settings.secrets(); }
 
 }  // namespace spark

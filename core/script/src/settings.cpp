@@ -71,8 +71,8 @@ void Settings::add(std::string key, Value value) {
   overrides_.push_back(std::move(o));
 }
 
-Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc,
-                        const List& choices) {
+Value Settings::declare(const std::string& name, const Value& defaultValue, const std::string& doc, const List& choices,
+                        bool secret) {
   if (name.empty() || name.find_first_of("./= ") != std::string::npos)
     throw Error(fmt::format(
         "cannot declare option '{}': a name must be there and must not hold '.', '/', '=' or a blank", name));
@@ -80,13 +80,14 @@ Value Settings::declare(const std::string& name, const Value& defaultValue, cons
   // Two configs may declare an option in the same way.
   const auto same = std::find_if(options_.begin(), options_.end(), [&](const Option& o) { return o.name == name; });
   if (same != options_.end()) {
+    same->secret |= secret;
     if (same->defaultValue == defaultValue && same->choices == choices) return same->value;
     throw Error(
         fmt::format("option '{}' is declared already, with another default or other choices (its default was {})", name,
                     same->defaultValue.text()));
   }
 
-  Option option{name, doc, defaultValue, defaultValue, choices};
+  Option option{name, doc, defaultValue, defaultValue, choices, secret};
   try {
     if (!defaultValue.isNil()) checkChoice(defaultValue, choices);
   } catch (const Error& e) {
@@ -175,7 +176,14 @@ void Settings::finish() {
 
 std::vector<List> Settings::options() const {
   std::vector<List> out;
-  for (const Option& o : options_) out.push_back({o.name, o.defaultValue, o.doc, o.value});
+  for (const Option& o : options_) out.push_back({o.name, o.defaultValue, o.doc, o.secret ? Value("") : o.value});
+  return out;
+}
+
+std::vector<std::string> Settings::secrets() const {
+  std::vector<std::string> out;
+  for (const Option& o : options_)
+    if (o.secret) out.push_back(o.name);
   return out;
 }
 

@@ -17,8 +17,9 @@ class Settings {
   /// Adds an override, which replaces an older one of the same key. Throws Error for a malformed key.
   void add(std::string key, Value value);
   /// Declares an option, for `option{}`. Returns its value: the override, or the default. Throws Error if the name is
-  /// not possible, if it is declared already in another way, or if the value does not fit.
-  Value declare(const std::string& name, const Value& defaultValue, const std::string& doc, const List& choices);
+  /// not possible, if it is declared already in another way, or if the value does not fit. `secret`: see secrets().
+  Value declare(const std::string& name, const Value& defaultValue, const std::string& doc, const List& choices,
+                bool secret = false);
   /// Sets the overridden members of nodes that are new since the last call. Throws Error for an unknown member or a
   /// value that does not fit.
   void apply();
@@ -27,8 +28,10 @@ class Settings {
   bool shields(const Leaf& leaf, std::string_view member);
   /// Throws Error for overrides that have had no effect, with the nearest names. To be called after a config.
   void finish();
-  /// The declared options: [name, default, doc, value] each.
+  /// The declared options: [name, default, doc, value] each; "" is shown for a secret.
   std::vector<List> options() const;
+  /// The names of the options that were declared as secrets.
+  std::vector<std::string> secrets() const;
 
  private:
   struct Override {
@@ -42,6 +45,7 @@ class Settings {
     std::string name, doc;
     Value defaultValue, value;
     List choices;
+    bool secret = false;
   };
   void set(Override& o, Leaf& target);
   std::string hint(const Override& o) const;

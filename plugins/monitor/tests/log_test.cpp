@@ -216,10 +216,9 @@ TEST_CASE("a log that cannot be written is reported once, and the server continu
   monitor.read();
   for (int i = 0; i < 100; ++i) stage.cycle();
   CHECK(!monitor.idle());
-  const auto first =
-      stage.text.find("the log '/nonexistent/folder/x.log' cannot be opened for writing (No such file or directory)");
+  const auto first = stage.text.find("cannot write the log /nonexistent/folder/x.log: No such file or directory");
   REQUIRE(first != std::string::npos);
-  CHECK(stage.text.find("the log '/nonexistent", first + 1) == std::string::npos);
+  CHECK(stage.text.find("cannot write the log", first + 1) == std::string::npos);
 }
 
 TEST_CASE("a recorded game is played to a monitor record by record, and late monitors can join") {

@@ -31,6 +31,9 @@ class ScriptServer : public Leaf, public IScriptServer {
   /// Adds a folder in which scripts are searched. Folders are searched in the order in which they were added, and for
   /// configs after the working folder.
   void addFolder(std::filesystem::path folder);
+  /// The folder in which configs are searched before all others, and scripts to attach after all others; without it
+  /// that is the working folder.
+  void setWorkingFolder(std::filesystem::path folder);
   /// Adds an override, as `--set KEY=VALUE` does. The key is an option, `Namespace.Name` or `/path.property`. What the
   /// config assigns to it is ignored. Throws Error for a malformed key.
   void addOverride(std::string key, Value value);
@@ -52,8 +55,10 @@ class ScriptServer : public Leaf, public IScriptServer {
   /// From now on handlers that scripts add are looked through: a warning names each global and local in which one keeps
   /// what is neither saved nor hashed.
   void warnOfUnsaved();
-  /// The options that configs have declared: [name, default, doc, value] each.
+  /// The options that configs have declared: [name, default, doc, value] each. Values of secrets are "".
   std::vector<List> options() const;
+  /// The names of those that are secrets, such as tokens: recordings and spectators must not get their values.
+  std::vector<std::string> secrets() const;
 
  protected:
   void onLink() override;
