@@ -14,6 +14,11 @@ ENGINES = ["OdeEngine", "ArticulatedEngine", "BulletEngine", "MujocoEngine"]
 PATIENCE = 1200  # s; a case that takes longer hangs
 
 
+def row_of(text):
+    """A row of the table of reports is a number, one of the papers a text: p66, pF8."""
+    return int(text) if text.strip().isdigit() else text.strip()
+
+
 class Case:
     """The first lines of a case's file."""
 
@@ -33,8 +38,10 @@ class Case:
     def take(self, key, value):
         if key in ("input", "right"):
             setattr(self, key, value.strip())
-        elif key in ("row", "exit"):
-            setattr(self, key, int(value) if value.strip().isdigit() else value.strip())
+        elif key == "row":
+            self.row = row_of(value)
+        elif key == "exit":
+            self.exit = int(value)
         elif key == "engines":
             self.engines = ENGINES if value.strip() == "all" else value.split()
         elif key == "args":
@@ -96,7 +103,7 @@ def run_all(folder, rows=(), names=(), jobs=1, cases=HERE / "cases"):
     """The results of all cases of a folder with these rows and names, sorted by row."""
     cases = [Case(f) for f in sorted(Path(cases).iterdir()) if f.suffix in (".lua", ".py")]
     cases = [c for c in cases if (not rows or c.row in rows) and (not names or c.name in names)]
-    work = sorted(((c, e) for c in cases for e in c.engines), key=lambda w: (w[0].row, w[0].name))
+    work = sorted(((c, e) for c in cases for e in c.engines), key=lambda w: (str(w[0].row).zfill(4), w[0].name))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         yield from pool.map(lambda w: run(w[0], w[1], Path(folder)), work)
 
@@ -105,7 +112,7 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("--bin", default=HERE.parent.parent / "build/release/bin")
     parser.add_argument("--cases", default=HERE / "cases", help="folder of the cases")
-    parser.add_argument("--row", type=lambda row: int(row) if row.isdigit() else row, action="append", default=[])
+    parser.add_argument("--row", type=row_of, action="append", default=[])
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--log", action="store_true", help="print the log of what is wrong")
     parser.add_argument("names", nargs="*")

@@ -92,23 +92,23 @@ std::int64_t ClassObject::livingCount() const { return static_cast<std::int64_t>
 std::string ClassObject::pluginName() const { return plugin_ ? plugin_->name() : std::string(); }
 
 ClassObject* ClassObject::base() {
-  if (base_ || description_.base.empty()) return base_;
-  base_ = kernel_.findClass(description_.base);
-  if (base_) return base_;
-  const Plugin* provider = kernel_.plugins().providerOf(description_.base);
-  throw Error(fmt::format(
-      "{} needs its base class {}, which is not registered. {}", classAndPlugin(*this), description_.base,
-      provider ? fmt::format("Plugin '{0}' provides it: add plugin \"{0}\" to the config.", provider->name())
-               : "No scanned plugin provides it."));
+  if (!base_ && !description_.base.empty()) base_ = kernel_.findClass(description_.base);
+  return base_;
 }
 
 /// Fills the lists that contain inherited entries. Later than the constructor, because bases may be registered after
-/// derived classes.
+/// derived classes. Throws Error if a base is not registered.
 void ClassObject::resolve() {
   if (resolved_) return;
   if (ClassObject* b = base()) {
     hooks_ = b->hooks();
     links_ = b->links();
+  } else if (!description_.base.empty()) {
+    const Plugin* provider = kernel_.plugins().providerOf(description_.base);
+    throw Error(fmt::format(
+        "{} needs its base class {}, which is not registered. {}", classAndPlugin(*this), description_.base,
+        provider ? fmt::format("Plugin '{0}' provides it: add plugin \"{0}\" to the config.", provider->name())
+                 : "No scanned plugin provides it."));
   }
   for (const Hook& h : description_.hooks) hooks_.push_back(&h);
   for (const LinkDescription& l : description_.links) links_.push_back(&l);
@@ -169,13 +169,13 @@ void ClassObject::warnOfMissing(const Leaf& leaf) const {
 
 bool ClassObject::isA(std::string_view className) {
   for (ClassObject* c = this; c; c = c->base())
-    if (c->name() == className) return true;
+    if (c->name() == className || c->baseName() == className) return true;
   return false;
 }
 
 bool ClassObject::isOrOffers(const std::string& name) {
   for (ClassObject* c = this; c; c = c->base())
-    if (c->name() == name ||
+    if (c->name() == name || c->baseName() == name ||
         std::any_of(c->interfaces().begin(), c->interfaces().end(), [&](const auto& i) { return i.id.name == name; }))
       return true;
   return false;

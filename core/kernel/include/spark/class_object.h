@@ -44,7 +44,7 @@ class ClassObject : public Leaf {
   /// Makes an object that is not part of the tree yet. Throws Error if the class is abstract, if a base is not
   /// registered (with the plugin that provides it), or if the constructor throws.
   std::unique_ptr<Leaf> create();
-  /// The class object of the base; nullptr for Leaf. Throws Error if it is not registered.
+  /// The class object of the base; nullptr for Leaf, and while the base is not registered.
   ClassObject* base();
   /// True if `className` is this class or one of its bases.
   bool isA(std::string_view className);
