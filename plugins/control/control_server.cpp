@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "api/credentials.h"
+#include "api/descriptors.h"
 #include "api/unix_socket.h"
 #include "socket_path.h"
 #include "spark/error.h"
@@ -61,6 +62,7 @@ void ControlServer::accept() {
   Protocol::socket socket(io_);
   acceptor_->accept(socket, ec);
   if (ec) return;
+  closeOnExec(socket.native_handle());
   if (isSameUser(socket.native_handle()))
     clients_.push_back(std::make_unique<control::ControlClient>(std::move(socket)));
   else

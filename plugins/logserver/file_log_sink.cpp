@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "api/descriptors.h"
 #include "spark/error.h"
 #include "spark/output_file.h"
 
@@ -68,7 +69,10 @@ std::shared_ptr<spdlog::logger> FileLogSink::open() {
   if (outputs::isTrial()) return nullptr;
   if (!continues && std::filesystem::exists(file_)) std::filesystem::resize_file(file_, 0);
   spdlog::file_event_handlers events;
-  events.after_open = [](const std::string& name, std::FILE* file) { outputs::lock(fileno(file), name, "the log"); };
+  events.after_open = [](const std::string& name, std::FILE* file) {
+    closeOnExec(fileno(file));
+    outputs::lock(fileno(file), name, "the log");
+  };
   return inThread(std::make_shared<spdlog::sinks::rotating_file_sink_st>(
       file_, static_cast<std::size_t>(maxSize_), static_cast<std::size_t>(older_), false, events));
 }

@@ -1,5 +1,6 @@
 #include "service.h"
 
+#include <fcntl.h>
 #include <pthread.h>
 #include <sched.h>
 #include <sys/resource.h>
@@ -12,6 +13,7 @@
 #include <csignal>
 #include <thread>
 
+#include "api/descriptors.h"
 #include "server_state.h"
 #include "spark/error.h"
 #include "spark/log.h"
@@ -61,7 +63,7 @@ struct Service::Impl {
               [this] { update(); }},
         assets(state.hub.assets(), e, log, [this](std::function<void()> f) { asio::post(io, std::move(f)); }) {
     open(s);
-    const int copy = dup(exchange.wakeupFd());  // `wakeup` closes its descriptor
+    const int copy = ::fcntl(exchange.wakeupFd(), F_DUPFD_CLOEXEC, 0);  // `wakeup` closes its descriptor
     if (copy < 0) throw Error("cannot open the web server: too many files are open");
     wakeup.assign(copy);
     awaitWakeup();
@@ -96,6 +98,7 @@ struct Service::Impl {
   bool bind(const tcp::endpoint& endpoint, error_code& ec) {
     acceptor.close(ec);
     acceptor.open(endpoint.protocol(), ec);
+    if (!ec) closeOnExec(acceptor.native_handle());
     if (!ec) acceptor.set_option(tcp::acceptor::reuse_address(true), ec);
     if (!ec) acceptor.bind(endpoint, ec);
     if (!ec) acceptor.listen(asio::socket_base::max_listen_connections, ec);
@@ -122,6 +125,7 @@ struct Service::Impl {
   }
 
   void serve(tcp::socket socket) {
+    closeOnExec(socket.native_handle());
     error_code ignored;
     socket.set_option(tcp::no_delay(true), ignored);
     socket.set_option(tcp::socket::send_buffer_size(kSendBufferBytes), ignored);

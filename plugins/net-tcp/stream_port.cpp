@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "api/descriptors.h"
 #include "net-tcp/net_server.h"
 #include "spark/error.h"
 
@@ -161,6 +162,7 @@ bool StreamPort::acceptAll() {
     net::Stream::socket socket(*io_);
     acceptor_->accept(socket, ec);
     if (!ec) {
+      closeOnExec(socket.native_handle());
       addConnection(std::move(socket));
     } else if (ec == boost::asio::error::would_block) {
       watchAccept();

@@ -4,6 +4,7 @@
 
 #include <boost/asio/ip/tcp.hpp>
 
+#include "api/descriptors.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -59,6 +60,7 @@ void TcpPort::open(Acceptor& acceptor) {
   const char* action = "open";
   const auto failed = [&] { return static_cast<bool>(ec); };
   acceptor.open(endpoint.protocol(), ec);
+  if (!failed()) closeOnExec(acceptor.native_handle());
   if (!failed()) action = "configure", acceptor.set_option(Acceptor::reuse_address(true), ec);
   if (!failed()) acceptor.non_blocking(true, ec);
   if (!failed()) action = "bind", acceptor.bind(endpoint, ec);

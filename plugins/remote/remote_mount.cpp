@@ -8,6 +8,7 @@
 #include <boost/asio/local/stream_protocol.hpp>
 #include <chrono>
 
+#include "api/descriptors.h"
 #include "messages.h"
 #include "remote_server.h"
 #include "spark/error.h"
@@ -50,10 +51,12 @@ std::unique_ptr<Wire> RemoteMount::open() {
     if (!at.path.empty()) {
       asio::local::stream_protocol::socket socket(io_);
       socket.connect(asio::local::stream_protocol::endpoint(at.path));
+      closeOnExec(socket.native_handle());
       return std::make_unique<Wire>(Wire::Socket(std::move(socket)), address_);
     }
     asio::ip::tcp::socket socket(io_);
     asio::connect(socket, asio::ip::tcp::resolver(io_).resolve(at.host, at.port));
+    closeOnExec(socket.native_handle());
     socket.set_option(asio::ip::tcp::no_delay(true));
     return std::make_unique<Wire>(Wire::Socket(std::move(socket)), address_);
   } catch (const boost::system::system_error& e) {

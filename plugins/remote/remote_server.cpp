@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "api/credentials.h"
+#include "api/descriptors.h"
 #include "api/unix_socket.h"
 #include "spark/error.h"
 
@@ -89,6 +90,7 @@ void RemoteServer::listen(const std::string& address, const Secret& secret) {
 
 void RemoteServer::listenAt(const Tcp::endpoint& endpoint) {
   Tcp::acceptor acceptor(io_, endpoint.protocol());
+  closeOnExec(acceptor.native_handle());
   acceptor.set_option(Tcp::acceptor::reuse_address(true));
   acceptor.bind(endpoint);
   acceptor.listen();
@@ -114,6 +116,7 @@ void RemoteServer::acceptFrom(std::optional<Acceptor>& acceptor) {
   typename Acceptor::protocol_type::socket socket(io_);
   acceptor->accept(socket, ec);
   if (ec) return;
+  closeOnExec(socket.native_handle());
   std::string peer;
   if constexpr (std::is_same_v<Acceptor, Tcp::acceptor>) {
     const Tcp::endpoint from = socket.remote_endpoint(ec);

@@ -9,6 +9,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -34,6 +35,20 @@ struct Actions {
   Actions() { posix_spawn_file_actions_init(&list); }
   ~Actions() { posix_spawn_file_actions_destroy(&list); }
 };
+/// Closes all descriptors in the new program but 0, 1, 2 and those that it is given: also those that a library or a
+/// plugin has opened without O_CLOEXEC.
+void closeOthers(posix_spawn_file_actions_t& actions, const std::vector<AgentProgram::Descriptor>& given) {
+  std::vector<int> kept;
+  for (const auto& [ours, theirs] : given) kept.push_back(theirs);
+  std::sort(kept.begin(), kept.end());
+  int next = 3;
+  for (const int descriptor : kept) {
+    for (; next < descriptor; ++next) posix_spawn_file_actions_addclose(&actions, next);
+    next = std::max(next, descriptor + 1);
+  }
+  posix_spawn_file_actions_addclosefrom_np(&actions, next);
+}
+
 struct Attributes {
   posix_spawnattr_t list;
   Attributes() { posix_spawnattr_init(&list); }
@@ -50,6 +65,7 @@ AgentProgram::AgentProgram(const AgentType& type, const std::vector<std::string>
   posix_spawn_file_actions_adddup2(&actions.list, out.descriptor(), 1);
   posix_spawn_file_actions_adddup2(&actions.list, errors.descriptor(), 2);
   for (const auto& [ours, theirs] : descriptors) posix_spawn_file_actions_adddup2(&actions.list, ours, theirs);
+  closeOthers(actions.list, descriptors);
   posix_spawn_file_actions_addchdir_np(&actions.list, type.folder.c_str());
   // A group of its own, so that what it starts ends with it, and Ctrl-C at the host does not reach it first.
   Attributes attributes;

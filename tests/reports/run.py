@@ -24,7 +24,7 @@ class Case:
 
     def __init__(self, file):
         self.file, self.name = file, file.stem
-        self.row, self.input, self.right, self.exit = 0, "", "", 0
+        self.row, self.input, self.right, self.exit, self.slow = 0, "", "", 0, False
         self.engines, self.arguments, self.expected, self.never = [None], ["--duration", "2"], [], []
         mark = "--" if file.suffix == ".lua" else "#"
         for line in file.read_text().splitlines():
@@ -42,6 +42,8 @@ class Case:
             self.row = row_of(value)
         elif key == "exit":
             self.exit = int(value)
+        elif key == "slow":
+            self.slow = True
         elif key == "engines":
             self.engines = ENGINES if value.strip() == "all" else value.split()
         elif key == "args":
@@ -51,7 +53,7 @@ class Case:
         elif key == "never":
             self.never.append(value)
         else:
-            raise ValueError(f"{self.file}: expected row, input, right, engines, args, expect, never or exit, found '{key}'")
+            raise ValueError(f"{self.file}: expected row, input, right, engines, args, slow, expect, never or exit, found '{key}'")
 
 
 def is_json(line):
@@ -99,10 +101,10 @@ def run(case, engine, folder):
             "seen": "; ".join(wrong or seen), "good": not wrong, "log": log if wrong else ""}
 
 
-def run_all(folder, rows=(), names=(), jobs=1, cases=HERE / "cases"):
+def run_all(folder, rows=(), names=(), jobs=1, cases=HERE / "cases", slow=False):
     """The results of all cases of a folder with these rows and names, sorted by row."""
     cases = [Case(f) for f in sorted(Path(cases).iterdir()) if f.suffix in (".lua", ".py")]
-    cases = [c for c in cases if (not rows or c.row in rows) and (not names or c.name in names)]
+    cases = [c for c in cases if (not rows or c.row in rows) and (not names or c.name in names) and (slow or names or not c.slow)]
     work = sorted(((c, e) for c in cases for e in c.engines), key=lambda w: (str(w[0].row).zfill(4), w[0].name))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:
         yield from pool.map(lambda w: run(w[0], w[1], Path(folder)), work)
@@ -113,12 +115,13 @@ def main():
     parser.add_argument("--bin", default=HERE.parent.parent / "build/release/bin")
     parser.add_argument("--cases", default=HERE / "cases", help="folder of the cases")
     parser.add_argument("--row", type=row_of, action="append", default=[])
+    parser.add_argument("--all", action="store_true", help="the slow ones, too")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--log", action="store_true", help="print the log of what is wrong")
     parser.add_argument("names", nargs="*")
     options = parser.parse_args()
     count = bad = 0
-    for r in run_all(Path(options.bin).resolve(), options.row, options.names, options.jobs, options.cases):
+    for r in run_all(Path(options.bin).resolve(), options.row, options.names, options.jobs, options.cases, options.all):
         count, bad = count + 1, bad + (not r["good"])
         print(f"{'right' if r['good'] else 'WRONG'} | {r['row']:>2} | {r['case']} {r['engine']} | {r['input']} | {r['right']} | {r['seen']}", flush=True)
         if options.log and r["log"]:
