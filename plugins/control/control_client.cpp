@@ -44,6 +44,7 @@ bool ControlClient::serve(Kernel& kernel, const Node& self) {
   if (const std::size_t end = in_.find('\n'); end != std::string::npos) {
     const std::string line = in_.substr(0, end);
     in_.erase(0, end + 1);
+    asked_ = true;
     writeLine(answer(kernel, self, line, watch_));
   } else if (watch_.started) {
     bool done = false;

@@ -19,6 +19,8 @@ class ControlClient {
   /// Writes unsent output, then answers at most one request or, without one, polls the watch. False if the connection
   /// is to be closed: it ended, or a request is too long. `self`: the server's node.
   bool serve(Kernel& kernel, const Node& self);
+  /// True if it has sent a request.
+  bool hasAsked() const { return asked_; }
 
  private:
   bool flush();
@@ -28,6 +30,7 @@ class ControlClient {
   Socket socket_;
   std::string in_, out_;  ///< received and not handled; not sent yet
   Watch watch_;           ///< of the last watch request
+  bool asked_ = false;
 };
 
 }  // namespace spark::control

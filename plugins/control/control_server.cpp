@@ -3,6 +3,8 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+
 #include "api/credentials.h"
 #include "api/descriptors.h"
 #include "api/unix_socket.h"
@@ -54,10 +56,16 @@ void ControlServer::onUnlink() {
 }
 
 void ControlServer::accept() {
-  if (!acceptor_ || clients_.size() >= kMaxClients) return;
+  if (!acceptor_) return;
   // accept() creates a socket object even if no client waits; poll() costs a tenth of that.
   pollfd waiting{acceptor_->native_handle(), POLLIN, 0};
   if (::poll(&waiting, 1, 0) <= 0) return;
+  if (clients_.size() >= kMaxClients) {
+    // One that asks nothing must not keep others out.
+    const auto silent = std::find_if(clients_.begin(), clients_.end(), [](const auto& c) { return !c->hasAsked(); });
+    if (silent == clients_.end()) return;
+    clients_.erase(silent);
+  }
   boost::system::error_code ec;
   Protocol::socket socket(io_);
   acceptor_->accept(socket, ec);

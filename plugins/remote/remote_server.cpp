@@ -106,32 +106,52 @@ void RemoteServer::listenAt(const std::string& path) {
   local_.emplace(std::move(acceptor));
 }
 
+/// True if there is a place for another client. If all are taken, the one that has waited for longest without saying
+/// what it wants is given up: it must not keep others out.
+bool RemoteServer::makeRoom() {
+  if (sessions_.size() < kMostClients) return true;
+  for (const auto& session : sessions_)
+    if (!session->isOpen() && !session->isLost()) {
+      session->lose("it did not say what it wants, and its place is needed");
+      break;
+    }
+  dismiss();
+  return sessions_.size() < kMostClients;
+}
+
 template <class Acceptor>
 void RemoteServer::acceptFrom(std::optional<Acceptor>& acceptor) {
-  if (!acceptor || sessions_.size() >= kMostClients) return;
+  for (std::size_t n = 0; acceptor && n < kMostClients && acceptOne(*acceptor); ++n) {
+  }
+}
+
+/// False if no client waits, or there is no place for one.
+template <class Acceptor>
+bool RemoteServer::acceptOne(Acceptor& acceptor) {
   // accept() creates a socket object even if no client waits; poll() costs a tenth of that.
-  pollfd waiting{acceptor->native_handle(), POLLIN, 0};
-  if (::poll(&waiting, 1, 0) <= 0) return;
+  pollfd waiting{acceptor.native_handle(), POLLIN, 0};
+  if (::poll(&waiting, 1, 0) <= 0 || !makeRoom()) return false;
   error_code ec;
   typename Acceptor::protocol_type::socket socket(io_);
-  acceptor->accept(socket, ec);
-  if (ec) return;
+  acceptor.accept(socket, ec);
+  if (ec) return false;
   closeOnExec(socket.native_handle());
   std::string peer;
   if constexpr (std::is_same_v<Acceptor, Tcp::acceptor>) {
     const Tcp::endpoint from = socket.remote_endpoint(ec);
-    if (ec) return;
+    if (ec) return true;
     peer = textOf(from);
     socket.set_option(Tcp::no_delay(true), ec);
   } else {
     peer = "this machine";
     if (!isSameUser(socket.native_handle())) {
       kernel().log().warning("a program of another user tried to open {} and was turned away", address_);
-      return;
+      return true;
     }
   }
   auto wire = std::make_unique<remote::Wire>(remote::Wire::Socket(std::move(socket)), peer);
   sessions_.push_back(std::make_unique<remote::Session>(host_, ++lastKey_, std::move(wire), std::move(peer)));
+  return true;
 }
 
 void RemoteServer::setPatience() {

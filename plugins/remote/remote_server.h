@@ -59,6 +59,9 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
  private:
   template <class Acceptor>
   void acceptFrom(std::optional<Acceptor>& acceptor);
+  template <class Acceptor>
+  bool acceptOne(Acceptor& acceptor);
+  bool makeRoom();
   void listenAt(const boost::asio::ip::tcp::endpoint& endpoint);
   void listenAt(const std::string& path);
   void dismiss();

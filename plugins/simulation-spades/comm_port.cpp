@@ -21,6 +21,7 @@ namespace spark::spades {
 namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::size_t kMostNewcomers = 64;
+constexpr std::chrono::seconds kHelloTime{5};  // within which a newcomer has to say hello
 }  // namespace
 
 /// An agent that a communication server runs.
@@ -108,17 +109,19 @@ void CommPort::poll(double patience, bool open) {
 }
 
 void CommPort::accept() {
-  while (newcomers_.size() < kMostNewcomers) {
+  for (std::size_t n = 0; n < kMostNewcomers; ++n) {
     const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     if (socket < 0) return;
+    // One that says nothing must not keep others out.
+    if (newcomers_.size() == kMostNewcomers) newcomers_.erase(newcomers_.begin());
     const int on = 1;
     ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
-    newcomers_.push_back(std::make_unique<FrameStream>(socket, socket));
+    newcomers_.push_back({std::make_unique<FrameStream>(socket, socket), Clock::now()});
   }
 }
 
 void CommPort::greet(bool open) {
-  for (auto& stream : newcomers_) {
+  for (auto& [stream, since] : newcomers_) {
     stream->poll();
     if (const auto frame = stream->receive()) {
       try {
@@ -128,11 +131,11 @@ void CommPort::greet(bool open) {
         stream->send(std::string(1, kRefused) + e.what());
         stream.reset();
       }
-    } else if (!stream->lost().empty()) {
+    } else if (!stream->lost().empty() || Clock::now() - since > kHelloTime) {
       stream.reset();
     }
   }
-  std::erase(newcomers_, nullptr);
+  std::erase_if(newcomers_, [](const Newcomer& n) { return !n.stream; });
 }
 
 void CommPort::welcome(std::unique_ptr<FrameStream>& stream, std::string_view frame, bool open) {
@@ -210,7 +213,7 @@ void CommPort::end() {
 
 void CommPort::addDescriptors(std::vector<pollfd>& out) const {
   out.push_back({listener_, POLLIN, 0});
-  for (const auto& stream : newcomers_) stream->addDescriptors(out);
+  for (const Newcomer& n : newcomers_) n.stream->addDescriptors(out);
   for (const auto& [session, server] : servers_)
     if (const FrameStream* const s = server->channel_.stream()) s->addDescriptors(out);
 }

@@ -61,6 +61,11 @@ class CommPort {
   void addDescriptors(std::vector<pollfd>& out) const;
 
  private:
+  /// A connection without a hello yet.
+  struct Newcomer {
+    std::unique_ptr<FrameStream> stream;
+    std::chrono::steady_clock::time_point since;
+  };
   void accept();
   void greet(bool open);
   /// Answers a hello. Throws Error if the server is refused.
@@ -74,7 +79,7 @@ class CommPort {
   bool over_ = false;
   const std::string token_;
   Log& log_;
-  std::vector<std::unique_ptr<FrameStream>> newcomers_;     ///< without a hello yet
+  std::vector<Newcomer> newcomers_;                         ///< the oldest first
   std::map<std::string, std::unique_ptr<Server>> servers_;  ///< by session
 };
 
