@@ -8,6 +8,7 @@
 
 #include "api/inputs.h"
 #include "api/phases.h"
+#include "api/removal.h"
 #include "spark/error.h"
 #include "spark/other_code.h"
 #include "spark/output_file.h"
@@ -126,16 +127,6 @@ Json set(Kernel& kernel, const Json& request) {
   Leaf& leaf = nodeOf(kernel, request);
   setProperty(leaf, textOf(request, "property"), fromJson(request["value"]));
   return propertiesOf(leaf, request);  // by reference: the name may have been set
-}
-
-/// The run loop and this server are on the call stack while a request is answered: refuses to remove them.
-void refuseRemovingServers(const Leaf& target, const std::string& method, const Leaf& self) {
-  if (method != "unlinkLeaf" && method != "unlinkChildren") return;
-  bool inServers = false;
-  for (const Leaf* up = &target; up; up = up->parent()) inServers |= up == self.parent();
-  for (const Leaf* up = &self; up; up = up->parent()) inServers |= up == &target;
-  if (inServers)
-    throw Error(fmt::format("cannot remove {} while the simulation runs: servers stay until its end", target.path()));
 }
 
 Json call(Kernel& kernel, const Leaf& self, const Json& request) {

@@ -38,8 +38,10 @@ class StreamPort : public Node {
 
   // For connections of this port.
 
-  /// Appends the framed message.
-  void frame(std::string_view message, std::string& out) { framing_->frame(message, out); }
+  /// Appends the framed message; nothing once the framing was removed.
+  void frame(std::string_view message, std::string& out) {
+    if (framing_) framing_->frame(message, out);
+  }
   /// Counts a message that was not sent.
   void countDropped() { ++messagesDropped_; }
   /// Writes a rate-limited log line that names this port.

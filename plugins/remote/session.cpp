@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "api/credentials.h"
+#include "api/removal.h"
 #include "messages.h"
 #include "spark/access.h"
 #include "spark/error.h"
@@ -178,7 +179,10 @@ Value Session::perform(const List& message) {
     setProperty(leaf, textAt(message, 3), message[4]);
     return {};
   }
-  if (kind == kCall) return callMethod(leaf, textAt(message, 3), at(message, 4, Value::Type::list).toList());
+  if (kind == kCall) {
+    refuseRemovingServers(leaf, textAt(message, 3), host_.server);
+    return callMethod(leaf, textAt(message, 3), at(message, 4, Value::Type::list).toList());
+  }
   throw Error(fmt::format("there is no request '{}'", kind));
 }
 
