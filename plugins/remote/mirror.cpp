@@ -8,23 +8,39 @@
 namespace spark::remote {
 
 namespace {
-constexpr std::size_t kMostNodes = 1'000'000;
+constexpr std::size_t kMostNodes = 200'000;
+constexpr std::size_t kMostWaiting = 100'000, kMostWaitingBytes = 64 << 20;
 
+/// Throws BadMessage for a name that no node can have.
+const std::string& nameAt(const List& message, std::size_t index) {
+  const std::string& name = textAt(message, index);
+  if (name.empty() || name == "." || name == ".." || name.find_first_of("/\\") != std::string::npos)
+    throw BadMessage(fmt::format("the other host names a node '{}'", name));
+  return name;
+}
 }  // namespace
 
-bool Mirror::follow(const List& message) {
+bool Mirror::follow(const List& message, std::size_t bytes) {
   const std::string& kind = message[0].toString();
   if (kind == kClass) {
-    classes_.define(mount_.kernel(), mount_.name(), message);
+    classes_.define(mount_.kernel(), mount_.name(), message, bytes);
     return true;
   }
   if (kind != kAdd && kind != kMove && kind != kRename && kind != kRemove) return false;
   if (waiting_.empty() && kind == kAdd)
     change(message);  // adding is always possible
   else
-    waiting_.push_back(message);
+    wait(message, bytes);
   catchUp();
   return true;
+}
+
+void Mirror::wait(const List& message, std::size_t bytes) {
+  if (waiting_.empty()) waitingBytes_ = 0;
+  waiting_.push_back(message);
+  waitingBytes_ += bytes;
+  if (waiting_.size() > kMostWaiting || waitingBytes_ > kMostWaitingBytes)
+    throw BadMessage("the other host changes its tree faster than this one can follow");
 }
 
 void Mirror::catchUp() {
@@ -34,7 +50,7 @@ void Mirror::catchUp() {
     } catch (const BadMessage&) {
       throw;
     } catch (const Error&) {
-      // A handler or a request works with the node: later, in the same order.
+      // What is never possible is a BadMessage. A handler or a request works with the node: later, in the same order.
       return;
     }
     waiting_.pop_front();
@@ -46,14 +62,19 @@ void Mirror::change(const List& message) {
   const std::uint64_t id = numberAt(message, 1);
   if (kind == kAdd) {
     if (nodes_.size() >= kMostNodes) throw BadMessage(fmt::format("the other host has more than {} nodes", kMostNodes));
-    Leaf& made = nodeOf(numberAt(message, 2)).create(classes_.of(textAt(message, 4)), textAt(message, 3));
+    Leaf& made = nodeOf(numberAt(message, 2)).create(classes_.of(textAt(message, 4)), nameAt(message, 3));
     nodes_.insert_or_assign(id, Ref<Leaf>(&made));
     return;
   }
   Leaf* const leaf = find(id);
   if (!leaf) return;  // it went with its parent
-  if (kind == kMove) leaf->parent()->reparent(*leaf, nodeOf(numberAt(message, 2)));
-  if (kind == kRename) leaf->setName(textAt(message, 2));
+  if (kind == kMove) {
+    Node& parent = nodeOf(numberAt(message, 2));
+    for (const Leaf* up = &parent; up; up = up->parent())
+      if (up == leaf) throw BadMessage("the other host moves a node below itself");
+    leaf->parent()->reparent(*leaf, parent);
+  }
+  if (kind == kRename) leaf->setName(nameAt(message, 2));
   if (kind == kRemove) {
     leaf->parent()->remove(*leaf);
     nodes_.erase(id);

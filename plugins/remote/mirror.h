@@ -2,6 +2,7 @@
 /// \file
 /// The copy of a subtree of another host: names, classes and shape.
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -17,8 +18,9 @@ class Mirror {
  public:
   explicit Mirror(Node& mount) : mount_(mount) {}
   /// Follows a message of TreeFeed; false if it is none. What cannot be done now, because a node is in use, is done by
-  /// a later call. Throws Error for a message that makes no sense.
-  bool follow(const List& message);
+  /// a later call. `bytes`: the length of the message. Throws Error for a message that makes no sense, and where too
+  /// much waits.
+  bool follow(const List& message, std::size_t bytes);
   /// Does what could not be done before.
   void catchUp();
   /// Removes all nodes.
@@ -26,6 +28,7 @@ class Mirror {
 
  private:
   void change(const List& message);
+  void wait(const List& message, std::size_t bytes);
   Node& nodeOf(std::uint64_t id) const;
   Leaf* find(std::uint64_t id) const;
 
@@ -33,6 +36,7 @@ class Mirror {
   ProxyClasses classes_;
   std::map<std::uint64_t, Ref<Leaf>> nodes_;  ///< by the other host's id
   std::deque<List> waiting_;
+  std::size_t waitingBytes_ = 0;  ///< what came since nothing waited
 };
 
 }  // namespace spark::remote

@@ -4,11 +4,14 @@
 
 #include "messages.h"
 #include "remote_node.h"
-#include "spark/error.h"
+#include "wire.h"
 
 namespace spark::remote {
 
 namespace {
+// Of all classes that a host describes, replaced ones among them.
+constexpr std::size_t kMostClasses = 10'000, kMostBytes = 64 << 20;
+
 /// All that is left, as one value: several plain arguments are the elements of a list.
 Value rest(Args& args) {
   if (args.left() == 1) return args.take();
@@ -57,11 +60,15 @@ Method method(const List& from) {
 }
 }  // namespace
 
-void ProxyClasses::define(Kernel& kernel, const std::string& mount, const List& message) {
+void ProxyClasses::define(Kernel& kernel, const std::string& mount, const List& message, std::size_t bytes) {
   try {
     const std::string remote = message.at(1).toString();
     Defined& defined = defined_[remote];
     if (defined.message == message) return;
+    bytes_ += bytes;
+    if (++made_ > kMostClasses || bytes_ > kMostBytes)
+      throw Error(
+          fmt::format("the other host describes more than {} classes, or {} bytes of them", kMostClasses, kMostBytes));
     const std::string& plugin = message.at(4).toString();
     ClassDescription description;
     description.base = RemoteNode::kClassName;
@@ -73,8 +80,10 @@ void ProxyClasses::define(Kernel& kernel, const std::string& mount, const List& 
     for (const Value& m : message.at(7).toList()) description.methods.push_back(method(m.toList()));
     const std::string name = fmt::format("{}@{}", remote, mount);
     description.name = name;
-    for (int n = 2; kernel.findClass(description.name); ++n) description.name = fmt::format("{}#{}", name, n);
-    defined = {message, description.name};
+    // Not from #2 each time: a host that changes its classes all the time would be searched for longer and longer.
+    int n = defined.times + 1;
+    while (kernel.findClass(description.name)) description.name = fmt::format("{}#{}", name, ++n);
+    defined = {message, description.name, n};
     kernel.registerClass(std::move(description), kernel.classOf(RemoteNode::kClassName).plugin());
   } catch (const std::logic_error&) {  // a list is too short
     throw Error("the other host describes a class in a way that is not understood");
@@ -85,7 +94,7 @@ void ProxyClasses::define(Kernel& kernel, const std::string& mount, const List& 
 
 const std::string& ProxyClasses::of(const std::string& remote) const {
   const auto at = defined_.find(remote);
-  if (at == defined_.end()) throw Error(fmt::format("the other host has not described its class {}", remote));
+  if (at == defined_.end()) throw BadMessage(fmt::format("the other host has not described its class {}", remote));
   return at->second.name;
 }
 

@@ -2,6 +2,7 @@
 /// \file
 /// Classes of this host that stand for those of another one.
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -15,8 +16,9 @@ namespace spark::remote {
 class ProxyClasses {
  public:
   /// Makes a class, or one that replaces it if the description has changed; nodes that exist keep the old one.
-  /// `message`: a message kClass. Throws Error for one that is none.
-  void define(Kernel& kernel, const std::string& mount, const List& message);
+  /// `message`: a message kClass, `bytes`: its length. Throws Error for one that is none, and where there would be more
+  /// classes than a host has.
+  void define(Kernel& kernel, const std::string& mount, const List& message, std::size_t bytes);
   /// The class for a class of the other host. Throws Error if that was not described.
   const std::string& of(const std::string& remote) const;
 
@@ -24,8 +26,10 @@ class ProxyClasses {
   struct Defined {
     List message;
     std::string name;
+    int times = 0;  ///< that it was described
   };
   std::map<std::string, Defined> defined_;  ///< by the other host's name
+  std::size_t made_ = 0, bytes_ = 0;        ///< classes so far, and what their descriptions were to read
 };
 
 }  // namespace spark::remote

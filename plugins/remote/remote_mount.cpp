@@ -20,7 +20,9 @@ namespace asio = boost::asio;
 using namespace remote;  // NOLINT(google-build-using-namespace)
 
 namespace {
-constexpr std::size_t kMostHostBytes = 64 << 20;  // of a message of the other host
+constexpr std::size_t kMostHostBytes = 64 << 20;   // of a message of the other host
+constexpr std::size_t kMostEventBytes = 64 << 20;  // of its events that wait here
+constexpr std::chrono::milliseconds kMostTime{5};  // for what it sends, at a time: the rest waits
 constexpr const char* kAsked = "another host is asked about it just now";
 constexpr const char* kPasses = "it passes an event of another host just now";
 }  // namespace
@@ -71,6 +73,7 @@ void RemoteMount::connect(const Secret& token) {
   kernel().root().require<RemoteServer>();  // it serves this mount
   mirror_.clear();
   events_.clear();
+  eventBytes_ = 0;
   listeners_.clear();
   wire_ = open();
   wire_->setLimit(kMostHostBytes);
@@ -127,7 +130,7 @@ List RemoteMount::awaitReply(std::uint64_t number) {
     for (;;) {
       if (!wire_->flush()) throw Error("the connection is broken");
       const bool alive = wire_->receive();
-      while (receiveOne(reply, number))
+      while (Clock::now() < end && receiveOne(reply, number))
         if (!reply.empty()) return reply;
       if (!alive) throw Error("the connection ended");
       const std::chrono::duration<double> left = end - Clock::now();
@@ -146,9 +149,12 @@ bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {
   if (!bytes) return false;
   List message = decode(*bytes);
   const std::string& kind = message[0].toString();
-  if (mirror_.follow(message)) return true;
+  if (mirror_.follow(message, bytes->size())) return true;
   if (kind == kRefused) throw Error(message.size() > 1 ? message[1].plain() : "it refuses");
   if (kind == kEvent) {
+    if (events_.empty()) eventBytes_ = 0;
+    eventBytes_ += bytes->size();
+    if (eventBytes_ > kMostEventBytes) throw Error("it sends events faster than this host can pass them");
     events_.push_back(std::move(message));
   } else if (kind == kWelcome) {
     if (number == 0) reply = std::move(message);
@@ -186,15 +192,11 @@ void RemoteMount::poll() {
       if (!wire_->flush()) throw Error("the connection is broken");
       mirror_.catchUp();
       const bool alive = wire_->receive();
-      List none;
-      while (wire_ && receiveOne(none, ~std::uint64_t{0})) {
-      }
-      if (!alive) throw Error("the connection ended");
+      if (handleWhatCame() && !alive) throw Error("the connection ended");
     } catch (const std::exception& e) {
       lose(e.what());
     }
   }
-  for (; !events_.empty() && wire_; events_.pop_front()) pass(List(std::move(events_.front())));
   if (wire_) wire_->flush();
   passing_ = false;
   if (!tellLost_) return;
@@ -203,6 +205,24 @@ void RemoteMount::poll() {
   Channel& lost = kernel().events().channel(kRemoteLost);
   const Value data = List{address_, lostBecause_};
   lost.emitAt(*this, {.name = lost.name(), .data = &data});
+}
+
+/// Follows changes of the tree and passes events, in the order in which they came, but not for long: a host that sends
+/// without end must not keep this one from its cycles. True if nothing is left.
+bool RemoteMount::handleWhatCame() {
+  using Clock = std::chrono::steady_clock;
+  List none;
+  const auto end = Clock::now() + kMostTime;
+  while (wire_ && Clock::now() < end) {
+    if (!events_.empty()) {
+      const List event = std::move(events_.front());
+      events_.pop_front();
+      pass(event);
+    } else if (!receiveOne(none, ~std::uint64_t{0})) {
+      return true;
+    }
+  }
+  return false;
 }
 
 /// Runs the handlers of an event, and says that they are done.

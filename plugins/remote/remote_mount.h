@@ -51,6 +51,7 @@ class RemoteMount : public Node, public IRemoteLink {
   std::string pathOf(const Leaf& node) const;
   List awaitReply(std::uint64_t number);
   bool receiveOne(List& reply, std::uint64_t number);
+  bool handleWhatCame();
   void pass(const List& event);
   void lose(std::string why);
   bool connected() const { return wire_ != nullptr; }
@@ -63,6 +64,7 @@ class RemoteMount : public Node, public IRemoteLink {
   std::unique_ptr<remote::Wire> wire_;
   remote::Mirror mirror_{*this};
   std::deque<List> events_;
+  std::size_t eventBytes_ = 0;  ///< of those that came since none waited
   std::map<std::uint64_t, Listener> listeners_;
   std::uint64_t lastRequest_ = 0, lastListener_ = 0;
   std::string lostBecause_ = "it was never connected";
