@@ -214,20 +214,22 @@ class ContactJointHandler : public CollisionHandler {
     using H = ContactJointHandler;
     d.doc("Makes the contacts of its collider solid and holds the surface.");
     d.property("contactBounceMode", &H::bounceMode, &H::setBounceMode).doc("Contacts bounce.");
-    d.property("contactBounceValue", &H::bounce, &H::setBounce).min(0).doc("Coefficient of restitution.");
+    d.property("contactBounceValue", &H::bounce, &H::setBounce).range(0, 1e6).doc("Coefficient of restitution.");
     d.property("minBounceVel", &H::bounceVelocity, &H::setBounceVelocity)
         .unit("m/s")
-        .min(0)
+        .range(0, 1e8)
         .doc("Smallest approach speed at which contacts bounce.");
     d.property("contactSoftERPMode", &H::erpMode, &H::setErpMode)
         .doc("Contacts use contactSoftERP instead of the world's ERP.");
     d.property("contactSoftERP", &H::erp, &H::setErp).range(0, 1).doc("Error reduction parameter of contacts.");
     d.property("contactSoftCFMMode", &H::cfmMode, &H::setCfmMode)
         .doc("Contacts use contactSoftCFM instead of the world's CFM.");
-    d.property("contactSoftCFM", &H::cfm, &H::setCfm).min(0).doc("Constraint force mixing of contacts.");
+    d.property("contactSoftCFM", &H::cfm, &H::setCfm).range(0, kSoftest).doc("Constraint force mixing of contacts.");
     d.property("contactSlipMode", &H::slipMode, &H::setSlipMode)
         .doc("Contacts slip in proportion to the force, along both tangents.");
-    d.property("contactSlip", &H::slip, &H::setSlip).min(0).doc("Slip per force, along both tangents [m/(N s)].");
+    d.property("contactSlip", &H::slip, &H::setSlip)
+        .range(0, kSoftest)
+        .doc("Slip per force, along both tangents [m/(N s)].");
     d.property("contactMu", &H::mu, &H::setMu)
         .unit("N")
         .min(0)
@@ -239,6 +241,9 @@ class ContactJointHandler : public CollisionHandler {
   const engine::Surface* surface() const override { return &surface_; }
   /// The surface, to be changed in place.
   engine::Surface& editSurface() { return surface_; }
+
+  /// The largest compliance, per force [m/(N s)], that engines can compute with.
+  static constexpr double kSoftest = 1e9;
 
  private:
   bool bounceMode() const { return surface_.bounceOn; }

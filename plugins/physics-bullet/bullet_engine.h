@@ -19,13 +19,13 @@ class BulletEngine : public Leaf, public engine::IEngine {
     engine::describeEngine(d);
     d.property("version", &BulletEngine::version).doc("Version of the library.");
     d.property("direct", &BulletEngine::direct_)
-        .min(0)
+        .range(0, 10000)
         .doc("Largest number of rows of constraints of an island that are solved directly; else by iterations.");
     d.property("iterations", &BulletEngine::iterations_)
-        .min(1)
+        .range(1, 10000)
         .doc("Largest number of iterations over contacts, motors and stops in a step.");
     d.property("tolerance", &BulletEngine::tolerance_)
-        .min(0)
+        .range(0, 1e6)
         .doc("Iterations end when they change no velocity by more than this [m/s or rad/s].");
   }
   Leaf& leaf() override { return *this; }

@@ -1,6 +1,7 @@
 #include "ode_shapes.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -10,7 +11,30 @@ namespace spark::ode {
 using engine::Shape;
 using engine::ShapeDescription;
 
-OdeMesh::OdeMesh(std::shared_ptr<const engine::Mesh> from) : mesh(std::move(from)), data(dGeomTriMeshDataCreate()) {
+namespace {
+
+/// The mesh without vertices that no triangle has: ODE fails on a mesh of one triangle with others.
+std::shared_ptr<const engine::Mesh> withoutUnused(std::shared_ptr<const engine::Mesh> mesh) {
+  const std::size_t points = mesh->vertices.size() / 3;
+  std::vector<std::uint32_t> now(points, 0);
+  for (const std::uint32_t i : mesh->triangles) now[i] = 1;
+  if (std::find(now.begin(), now.end(), 0U) == now.end()) return mesh;
+  auto out = std::make_shared<engine::Mesh>();
+  std::uint32_t count = 0;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (now[i] == 0) continue;
+    const auto vertex = mesh->vertices.begin() + static_cast<std::ptrdiff_t>(3 * i);
+    out->vertices.insert(out->vertices.end(), vertex, vertex + 3);
+    now[i] = count++;
+  }
+  for (const std::uint32_t i : mesh->triangles) out->triangles.push_back(now[i]);
+  return out;
+}
+
+}  // namespace
+
+OdeMesh::OdeMesh(std::shared_ptr<const engine::Mesh> from)
+    : mesh(withoutUnused(std::move(from))), data(dGeomTriMeshDataCreate()) {
   dGeomTriMeshDataBuildDouble(data, mesh->vertices.data(), 3 * sizeof(double),
                               static_cast<int>(mesh->vertices.size() / 3), mesh->triangles.data(),
                               static_cast<int>(mesh->triangles.size()), 3 * sizeof(std::uint32_t));

@@ -12,7 +12,7 @@ void BoxCollider::describe(Description<BoxCollider>& d) {
   d.implements<IRobotBox>();
   d.property("boxLengths", &BoxCollider::boxLengths, &BoxCollider::setLengths)
       .unit("m")
-      .min(0)
+      .range(0, physics::kFarthest)
       .doc("Full edge lengths.");
   d.method("getBoxLength", &BoxCollider::length).parameters({"axis"}).doc("Edge length along axis 0, 1 or 2 [m].");
   d.method("getPointDepth", &BoxCollider::pointDepth)
@@ -49,7 +49,10 @@ double BoxCollider::length(int axis) const {
 
 void SphereCollider::describe(Description<SphereCollider>& d) {
   d.doc("A sphere.");
-  d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius).unit("m").min(0).doc("Radius.");
+  d.property("radius", &SphereCollider::radius, &SphereCollider::setRadius)
+      .unit("m")
+      .range(0, physics::kFarthest)
+      .doc("Radius.");
   d.method("getPointDepth", &SphereCollider::pointDepth)
       .parameters({"point [m]"})
       .doc("Depth of a point, given in the frame of its transform, below the surface [m]; negative outside.");

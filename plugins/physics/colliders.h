@@ -4,6 +4,7 @@
 
 #include "api/robot_parts.h"
 #include "collider.h"
+#include "shapes.h"
 
 namespace spark {
 
@@ -102,8 +103,11 @@ class LongCollider : public Collider {
 
  protected:
   static void describeLong(Description<Self>& d) {
-    d.property("radius", &Self::radius, &Self::setRadius).unit("m").min(0).doc("Radius.");
-    d.property("length", &Self::length, &Self::setLength).unit("m").min(0).doc("Length along z, without caps.");
+    d.property("radius", &Self::radius, &Self::setRadius).unit("m").range(0, physics::kFarthest).doc("Radius.");
+    d.property("length", &Self::length, &Self::setLength)
+        .unit("m")
+        .range(0, physics::kFarthest)
+        .doc("Length along z, without caps.");
     d.method("setParams", &Self::setParams).parameters({"radius [m]", "length [m]"}).doc("Radius and length at once.");
     d.method("getPointDepth", &Self::pointDepth)
         .parameters({"point [m]"})

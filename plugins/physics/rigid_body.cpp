@@ -13,7 +13,10 @@ void RigidBody::describe(Description<RigidBody>& d) {
   d.implements<IPlacedBody>();
   d.implements<IFollowsTransform>();
   d.implements<ISceneCalls>();
-  d.property("mass", &B::mass, &B::setMass).unit("kg").doc("Total mass. Setting it scales the inertia as well.");
+  d.property("mass", &B::mass, &B::setMass)
+      .unit("kg")
+      .range(physics::kLeastMass, physics::kMostMass)
+      .doc("Total mass. Setting it scales the inertia as well.");
   d.property("position", &B::position, &B::setPosition).unit("m").savedByClass().doc("Centre of mass in the world.");
   d.property("velocity", &B::velocity, &B::setVelocity)
       .unit("m/s")
@@ -34,11 +37,11 @@ void RigidBody::describe(Description<RigidBody>& d) {
           "body whose place and velocity are its coordinates.");
   d.property("linearDamping", &B::linearDamping, &B::setLinearDamping)
       .unit("N s/m")
-      .min(0)
+      .range(0, 1e9)
       .doc("Force per velocity against the motion in the world, at the origin of its link's frame.");
   d.property("angularDamping", &B::angularDamping, &B::setAngularDamping)
       .unit("N m s")
-      .min(0)
+      .range(0, 1e9)
       .doc("Torque per angular velocity against the rotation in the world.");
   d.property("gravityOn", &B::usesGravity, &B::useGravity).doc("The world's gravity acts on it.");
 
@@ -228,7 +231,7 @@ void RigidBody::applyMass(const engine::Mass& mass) {
     try {
       world_->setMass(body_, mass);
     } catch (const Error& e) {
-      throw Error(fmt::format("{}: cannot set the mass; it stays {:f} kg", where(), mass_.mass), e);
+      throw Error(fmt::format("{}: cannot set the mass; it stays {:g} kg", where(), mass_.mass), e);
     }
   }
   const bool scaled = mass.inertia.isApprox(mass.mass / mass_.mass * mass_.inertia, 1e-9);

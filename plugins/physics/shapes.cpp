@@ -11,8 +11,10 @@ using engine::ShapeDescription;
 
 namespace {
 
+constexpr double kMostDistance = 1e9;  // m: of a plane from the origin
+
 void expectLength(double v, const char* what) {
-  if (!std::isfinite(v) || v < 0) throw Error(fmt::format("expected {} of 0 m or more, found {}", what, v));
+  if (!(v >= 0 && v <= kFarthest)) throw Error(fmt::format("expected {} of 0 to {} m, found {}", what, kFarthest, v));
 }
 
 /// Throws Error for a malformed mesh.
@@ -73,12 +75,13 @@ void checkShape(const ShapeDescription& s) {
       break;
     case Shape::plane:
       if (const double n = std::hypot(s.plane[0], s.plane[1], s.plane[2]);
-          !(n > 1e-12) || !std::isfinite(n) || !std::isfinite(s.plane[3]))
+          !(n > 1e-12) || !std::isfinite(n) || !(std::abs(s.plane[3] / n) <= kMostDistance))
         throw Error("expected a plane with a normal longer than 0 m and finite numbers");
       break;
     case Shape::ray:
       expectLength(s.length, "a ray's length");
-      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() || !s.rayOrigin.allFinite())
+      if (!(s.rayDirection.norm() > 1e-12) || !s.rayDirection.allFinite() ||
+          !(s.rayOrigin.cwiseAbs().maxCoeff() <= kFarthest))
         throw Error("expected a ray with a direction longer than 0 m and finite numbers");
       break;
     case Shape::mesh:

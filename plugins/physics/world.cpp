@@ -38,7 +38,7 @@ void World::describe(Description<World>& d) {
       .state()
       .doc("Error reduction parameter: the fraction of a constraint's error that one step corrects.");
   d.property("CFM", &World::cfm, &World::setCfm)
-      .min(0)
+      .range(0, ContactJointHandler::kSoftest)
       .state()
       .doc("Constraint force mixing (compliance / time step) of all constraints.");
   d.property("autoDisableFlag", &World::autoDisable, &World::setAutoDisable).state().doc("Bodies at rest fall asleep.");
@@ -46,7 +46,7 @@ void World::describe(Description<World>& d) {
       .doc("Bodies that joints connect collide with each other.");
   d.property("contactSurfaceLayer", &World::surfaceLayer, &World::setSurfaceLayer)
       .unit("m")
-      .min(0)
+      .range(0, physics::kFarthest)
       .state()
       .doc("Allowed penetration depth of contacts.");
   d.property("timestep", &World::timestep, &World::setTimestep)

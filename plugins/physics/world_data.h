@@ -51,6 +51,11 @@ inline bool inRange(const double* v, int n) {
 }
 inline bool inRange(const Vec3& v) { return inRange(v.data(), 3); }
 
+// What engines can compute with: the squares, products and inverses of other numbers overflow or lose all digits. A
+// gnat has 1e-6 kg, a cruise ship 1e8 kg.
+inline constexpr double kLeastMass = 1e-15, kMostMass = 1e15;        ///< [kg]
+inline constexpr double kLeastInertia = 1e-30, kMostInertia = 1e30;  ///< about any axis [kg m^2]
+
 /// The nearest number within +-1e30: larger forces, torques and joint parameters make engines overflow.
 inline double bounded(double v) { return std::clamp(v, -1e30, 1e30); }
 inline Vec3 bounded(const Vec3& v) { return v.cwiseMax(-1e30).cwiseMin(1e30); }

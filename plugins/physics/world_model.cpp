@@ -100,13 +100,19 @@ void WorldModel::destroyBody(BodyHandle body) {
 void WorldModel::setMass(BodyHandle body, const engine::Mass& mass) {
   const bool finite = std::isfinite(mass.mass) && mass.center.allFinite() && mass.inertia.allFinite();
   if (!finite || mass.mass <= 0)
-    throw Error(fmt::format("expected a mass above 0 kg and finite numbers, found {:f} kg", mass.mass));
+    throw Error(fmt::format("expected a mass above 0 kg and finite numbers, found {:g} kg", mass.mass));
+  if (mass.mass < kLeastMass || mass.mass > kMostMass)
+    throw Error(fmt::format("expected a mass of {:g} to {:g} kg, found {:g} kg", kLeastMass, kMostMass, mass.mass));
   if (mass.center.norm() > 1e-9)
     throw Error("expected a centre of mass at the body's origin; move the body there first");
   if (Eigen::LLT<Mat3>(mass.inertia).info() != Eigen::Success || !mass.inertia.isApprox(mass.inertia.transpose(), 1e-9))
     throw Error(
         "expected a symmetric, positive definite inertia: no real body has the one given. Check its diagonal and "
         "products of inertia");
+  if (const double most = mass.inertia.cwiseAbs().maxCoeff(), least = 1 / mass.inertia.inverse().cwiseAbs().maxCoeff();
+      !(least >= kLeastInertia && most <= kMostInertia))
+    throw Error(fmt::format("expected moments of inertia of {:g} to {:g} kg m^2, found {:g} to {:g}", kLeastInertia,
+                            kMostInertia, least, most));
   engine::Body& b = model_.bodies[bodies_[body]];
   if (b.mass == mass.mass && b.inertia == mass.inertia) return;
   b.mass = mass.mass;
