@@ -7,7 +7,7 @@
 
 namespace spark::camera {
 
-Image readPng(std::string_view file) {
+Image readPng(std::string_view file, std::size_t mostBytes) {
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&png, file.data(), file.size()))
@@ -15,10 +15,15 @@ Image readPng(std::string_view file) {
   png.format = PNG_FORMAT_RGBA;
   Image out;
   // A texture larger than the largest picture shows no more.
-  constexpr png_uint_32 kMaxEdge = 8192;
-  if (png.width > kMaxEdge || png.height > kMaxEdge) {
+  constexpr png_uint_32 kMaxEdge = 4096;
+  std::string refused;
+  if (png.width > kMaxEdge || png.height > kMaxEdge)
+    refused = fmt::format("expected at most {} px, found {} x {}", kMaxEdge, png.width, png.height);
+  else if (PNG_IMAGE_SIZE(png) > mostBytes)
+    refused = fmt::format("its {} x {} px are too many beside those of all other pictures", png.width, png.height);
+  if (!refused.empty()) {
     png_image_free(&png);
-    throw Error(fmt::format("expected at most {} px, found {} x {}", kMaxEdge, png.width, png.height));
+    throw Error(refused);
   }
   out.width = static_cast<int>(png.width), out.height = static_cast<int>(png.height);
   out.pixels.resize(PNG_IMAGE_SIZE(png));

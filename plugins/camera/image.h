@@ -17,8 +17,8 @@ struct Image {
   std::vector<std::uint8_t> pixels;
 };
 
-/// Reads a PNG file. Throws Error.
-Image readPng(std::string_view file);
+/// Reads a PNG file. Throws Error, also if it has more than `mostBytes` of pixels.
+Image readPng(std::string_view file, std::size_t mostBytes = SIZE_MAX);
 /// The picture as a PNG file, the usual way up: 8-bit RGB for colours, 16-bit grey for numbers. Throws Error.
 std::string writePng(const Picture& picture);
 /// Appends the bytes as base64 (RFC 4648, with padding).

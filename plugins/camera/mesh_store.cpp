@@ -43,7 +43,11 @@ const Mesh* MeshStore::mesh(const std::string& resource) {
 
 const Image* MeshStore::image(const std::string& resource) {
   if (resource.empty()) return nullptr;
-  return get(resource, images_, allImages_, [](const std::string& bytes) { return readPng(bytes); });
+  return get(resource, images_, allImages_, [this](const std::string& bytes) {
+    Image image = readPng(bytes, kMostPixelBytes - pixelBytes_);
+    pixelBytes_ += image.pixels.size();
+    return image;
+  });
 }
 
 }  // namespace spark::camera

@@ -2,6 +2,7 @@
 /// \file
 /// Meshes and textures by name, read from the file server.
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <map>
@@ -20,7 +21,7 @@ namespace spark::camera {
 using Mesh = meshes::VisualMesh;
 
 /// Reads each file once, and again when it changed. What it returns lives as long as the store. A file that cannot be
-/// read is logged once.
+/// read is logged once, and one whose pixels would be too many beside those of all others.
 class MeshStore {
  public:
   /// `kernel` must outlive it.
@@ -41,6 +42,8 @@ class MeshStore {
   const T* get(const std::string& resource, std::map<std::string, Known<T>>& known, std::deque<T>& all, Read read);
 
   Kernel& kernel_;
+  static constexpr std::size_t kMostPixelBytes = std::size_t{256} << 20;  ///< of all images
+  std::size_t pixelBytes_ = 0;
   std::deque<Mesh> allMeshes_;
   std::deque<Image> allImages_;
   std::map<std::string, Known<Mesh>> meshes_;

@@ -20,7 +20,8 @@ namespace spark::meshes {
 
 namespace {
 constexpr char kResult = 'r', kFailure = 'f';
-constexpr std::size_t kMostResult = std::size_t{1} << 30;
+constexpr std::size_t kMostResult = std::size_t{1} << 30, kMemory = std::size_t{3} << 29;  // bytes
+constexpr unsigned kSeconds = 10;  // of CPU time: the simulation may wait for it
 
 /// `margin`: between the limit that sends a signal and the one that kills.
 void limit(int resource, std::size_t most, std::size_t margin = 0) {
@@ -33,7 +34,6 @@ void limit(int resource, std::size_t most, std::size_t margin = 0) {
 /// copies.
 void prepareCopy(int to) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  constexpr std::size_t kMemory = std::size_t{4} << 30, kSeconds = 60;
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
   limit(RLIMIT_AS, pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + kMemory);
@@ -75,8 +75,8 @@ std::string readAll(int from) {
 /// How a copy ended that has no result.
 std::string endOf(int status) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  if (signal == SIGXCPU) return "the reader took more than a minute of CPU time";
-  if (signal == SIGALRM) return "the reader took more than ten minutes";
+  if (signal == SIGXCPU) return fmt::format("the reader took more than {} s of CPU time", kSeconds);
+  if (signal == SIGALRM) return fmt::format("the reader took more than {} s", 10 * kSeconds);
   return signal ? fmt::format("the reader crashed: {}", ::strsignal(signal)) : std::string("the reader crashed");
 }
 
@@ -88,7 +88,7 @@ std::string endOf(int status) {
     out = work();
     out.insert(out.begin(), kResult);
   } catch (const std::bad_alloc&) {
-    out = kFailure + std::string("the reader needs more than 4 GiB of memory");
+    out = kFailure + std::string("the reader needs more than 1.5 GiB of memory");
   } catch (const std::exception& e) {
     out = kFailure + std::string(e.what());
   }

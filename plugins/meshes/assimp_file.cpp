@@ -15,13 +15,16 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <span>
 #include <type_traits>
 
 #include "apart.h"
 #include "spark/error.h"
+#include "spark/random.h"
 #include "spark/state_stream.h"
 
 namespace spark::meshes {
@@ -169,6 +172,37 @@ std::string written(const AssimpFile& file) {
   return out.take();
 }
 
+/// The last files that could not be read, of all threads: finding that out may take seconds each time, in which the
+/// simulation waits, and each robot that comes with such a file would cost them again.
+class KnownFailures {
+ public:
+  /// Throws Error with what add() was given for this file.
+  void throwIfKnown(const std::string& format, const std::string& bytes) {
+    const std::lock_guard lock(mutex_);
+    const std::uint64_t hash = hashOf(format, bytes);
+    for (const Failure& f : all_)
+      if (f.hash == hash && f.size == bytes.size()) throw Error(f.why);
+  }
+  void add(const std::string& format, const std::string& bytes, const char* why) {
+    const std::lock_guard lock(mutex_);
+    if (all_.size() == kMost) all_.pop_front();
+    all_.push_back({hashOf(format, bytes), bytes.size(), why});
+  }
+
+ private:
+  static constexpr std::size_t kMost = 64;
+  struct Failure {
+    std::uint64_t hash;
+    std::size_t size;
+    std::string why;
+  };
+  static std::uint64_t hashOf(const std::string& format, const std::string& bytes) {
+    return hashBytes(bytes, hashBytes(format));
+  }
+  std::mutex mutex_;
+  std::deque<Failure> all_;
+};
+
 AssimpFile readBack(const std::string& bytes) {
   StateReader in(bytes);
   AssimpFile out;
@@ -205,7 +239,14 @@ std::string formatOf(const std::string& name) {
 }
 
 AssimpFile readAssimpFile(const std::string& format, const std::string& bytes) {
-  return readBack(doneApart([&] { return written(readHere(format, bytes)); }));
+  static KnownFailures known;
+  known.throwIfKnown(format, bytes);
+  try {
+    return readBack(doneApart([&] { return written(readHere(format, bytes)); }));
+  } catch (const Error& e) {
+    known.add(format, bytes, e.what());
+    throw;
+  }
 }
 
 }  // namespace spark::meshes

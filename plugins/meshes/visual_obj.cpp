@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <istream>
 #include <map>
+#include <set>
 #include <span>
 #include <sstream>
 #include <streambuf>
@@ -27,26 +28,43 @@ struct Bytes : std::streambuf {
   }
 };
 
-/// Reads the files of materials that a mesh names.
+/// Number of lines that begin a material.
+std::size_t countMaterials(std::string_view bytes) {
+  constexpr std::string_view kWord = "newmtl";
+  std::size_t n = 0;
+  for (std::size_t at = 0; (at = bytes.find(kWord, at)) != bytes.npos; at += kWord.size()) ++n;
+  return n;
+}
+
+/// Reads the files of materials that a mesh names, each once.
 struct Materials : tinyobj::MaterialReader {
+  static constexpr std::size_t kMost = 4096;  // materials of all files: the reader has some KB for each
   Materials(const std::string& mesh, const FindFile& find) : mesh(mesh), find(find) {}
   bool operator()(const std::string& name, std::vector<tinyobj::material_t>* out, std::map<std::string, int>* indices,
                   std::string* warning, std::string* error) override {
+    // True only with materials: the reader takes the address of the first.
+    if (!read.insert(fileOf(name)).second) return !out->empty();
     const std::string resource = resourceOf(name, "materials", mesh, find);
     if (resource.empty()) return false;
     const std::string bytes = *find(resource);
+    count += countMaterials(bytes);
+    if (count > kMost) throw Error(fmt::format("expected at most {} materials, found {} so far", kMost, count));
     Bytes buffer(bytes);
     std::istream stream(&buffer);
     tinyobj::LoadMtl(indices, out, &stream, warning, error);
-    return true;
+    return !out->empty();
   }
   const std::string& mesh;
   const FindFile& find;
+  std::set<std::string> read;
+  std::size_t count = 0;
 };
 
 Color colorOf(const float (&c)[3]) { return {c[0], c[1], c[2], 1}; }
 
-MeshMaterial materialOf(const tinyobj::material_t& m, const std::string& mesh, const FindFile& find) {
+/// `textures`: resources by what materials have named so far, each of which is read to find it.
+MeshMaterial materialOf(const tinyobj::material_t& m, const std::string& mesh, const FindFile& find,
+                        std::map<std::string, std::string>& textures) {
   MeshMaterial out;
   out.name = m.name;
   out.look.ambient = colorOf(m.ambient);
@@ -55,7 +73,10 @@ MeshMaterial materialOf(const tinyobj::material_t& m, const std::string& mesh, c
   out.look.specular = colorOf(m.specular);
   out.look.emission = colorOf(m.emission);
   out.look.shininess = std::clamp<double>(m.shininess, 0, 128);
-  if (!m.diffuse_texname.empty()) out.texture = resourceOf(m.diffuse_texname, "textures", mesh, find);
+  if (m.diffuse_texname.empty()) return out;
+  const auto [known, isNew] = textures.try_emplace(fileOf(m.diffuse_texname));
+  if (isNew) known->second = resourceOf(m.diffuse_texname, "textures", mesh, find);
+  out.texture = known->second;
   return out;
 }
 
@@ -67,7 +88,8 @@ class Builder {
   void addPlace(float u, float v) { places_.emplace_back(u, v, 0); }
   void setMaterial(const char* name) { part_ = &partOf(name); }
   void setMaterials(std::span<const tinyobj::material_t> materials) {
-    materials_.assign(materials.begin(), materials.end());
+    // All so far, at each line that names a file: they only become more.
+    if (materials.size() != materials_.size()) materials_.assign(materials.begin(), materials.end());
   }
   /// A polygon; one with fewer than three corners shows nothing.
   void addFace(std::span<const tinyobj::index_t> corners) {
@@ -77,7 +99,8 @@ class Builder {
     for (std::size_t i = 2; i < corners.size(); ++i) addTriangle({corners[0], corners[i - 1], corners[i]});
   }
   VisualMesh take(const std::string& resource, const FindFile& find) {
-    for (const tinyobj::material_t& m : materials_) out_.materials.push_back(materialOf(m, resource, find));
+    std::map<std::string, std::string> textures;
+    for (const tinyobj::material_t& m : materials_) out_.materials.push_back(materialOf(m, resource, find, textures));
     for (auto& [material, part] : parts_)
       if (!part.vertices.empty()) out_.parts.push_back(std::move(part));
     return std::move(out_);

@@ -48,5 +48,6 @@ TEST_CASE("what is no PNG file is refused") {
   CHECK_THROWS_WITH(readPng("GIF89a"), Catch::Contains("expected a PNG file"));
   Picture p{PictureKind::colour, 16, 16, std::vector<std::uint8_t>(768, 77), {}};
   const std::string file = writePng(p);
+  CHECK_THROWS_WITH(readPng(file, 7), Catch::Contains("px are too many beside those of all other pictures"));
   CHECK_THROWS_AS(readPng(std::string_view(file).substr(0, file.size() / 2)), Error);
 }

@@ -103,3 +103,24 @@ TEST_CASE("a mesh file of an unknown kind, or that is damaged, is not shown, wit
   CHECK_THROWS_AS(readVisualMesh("a.stl", "no mesh", among({})), Error);
   CHECK_THROWS_AS(readVisualMesh("a.msh", "short", among({})), Error);
 }
+
+TEST_CASE("files of materials that a mesh names are read once, and have a limit together") {
+  const std::string face = "v 0 0 0\nv 1 0 0\nv 1 0 1\nusemtl m7\nf 1 2 3\n";
+  std::string many, names;
+  for (int i = 0; i < 2000; ++i) many += fmt::format("newmtl m{}\nmap_Kd wood.png\n", i);
+  for (int i = 0; i < 500; ++i) names += fmt::format("mtllib {}many.mtl\n", std::string(i, '/'));
+  int reads = 0, textures = 0;
+  const FindFile find = [&](const std::string& name) -> std::optional<std::string> {
+    if (name == "textures/wood.png") return ++textures, "";
+    if (!name.starts_with("materials/")) return std::nullopt;
+    return ++reads, name == "materials/flood.mtl" ? many + many + many : many;
+  };
+  CHECK(readVisualMesh("models/a.obj", names + face, find).materials.size() == 2000);
+  CHECK(textures < 3);
+  CHECK(reads <= 2);
+  CHECK(readVisualMesh("models/a.obj", "mtllib none.mtl\n" + face, [](const std::string&) {
+          return "";
+        }).parts.size() == 1);
+  CHECK_THROWS_WITH(readVisualMesh("models/a.obj", "mtllib flood.mtl\n" + face, find),
+                    Catch::Contains("expected at most 4096 materials, found 6000"));
+}
