@@ -33,6 +33,8 @@ TEST_CASE("Text from outside cannot forge lines or control a terminal") {
   CHECK(text == "outer\n  because: inner");
   log.info("{}", std::string("a\0b", 3));
   CHECK(text == "a\\x00b");
+  log.info("\u00e9 \u009b2J \u20ac");
+  CHECK(text == "\u00e9 \\xc2\\x9b2J \u20ac");
 }
 
 TEST_CASE("Further sinks have levels of their own") {

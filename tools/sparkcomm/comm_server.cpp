@@ -11,9 +11,11 @@
 #include <cmath>
 #include <filesystem>
 #include <thread>
+#include <utility>
 
 #include "api/credentials.h"
 #include "spark/error.h"
+#include "spark/printable.h"
 
 namespace spark::spades {
 
@@ -24,7 +26,8 @@ constexpr double kAnswer = 5;                   // s: how long the simulator may
 constexpr auto kEnd = std::chrono::seconds(2);  // that agents get to end
 
 void say(const std::string& line) {
-  std::fputs(fmt::format("sparkcomm: {}\n", line).c_str(), stderr);  // does not throw if stderr is gone
+  // Does not throw if stderr is gone. It may quote the simulator.
+  std::fputs(fmt::format("sparkcomm: {}\n", printable(line)).c_str(), stderr);
   std::fflush(stderr);
 }
 }  // namespace
@@ -104,21 +107,30 @@ void CommServer::connect() {
     say(fmt::format("no simulator at {}:{} for {} s", options_.host, options_.port, options_.patience));
 }
 
-/// Does what the simulator says.
+/// Does what the simulator says. What makes no sense is passed over: it must not cost the agents that play.
 void CommServer::obey() {
   while (const auto message = channel_.receive()) {
-    const auto [word, rest] = splitWord(*message);
-    if (word == "end") {
-      over_ = true;
-      return;
+    try {
+      obey(*message);
+    } catch (const Error& e) {
+      if (!std::exchange(confused_, true)) say(fmt::format("the simulator says what makes no sense: {}", e.what()));
     }
-    const auto [id, text] = splitWord(rest);
-    if (word == "start") {
-      start(numberOf(id), text);
-    } else if (word == "to") {
-      const auto agent = agents_.find(numberOf(id));
-      if (agent != agents_.end()) agent->second->send(text);
-    }
+    if (over_) return;
+  }
+}
+
+void CommServer::obey(std::string_view message) {
+  const auto [word, rest] = splitWord(message);
+  if (word == "end") {
+    over_ = true;
+    return;
+  }
+  const auto [id, text] = splitWord(rest);
+  if (word == "start") {
+    start(numberOf(id), text);
+  } else if (word == "to") {
+    const auto agent = agents_.find(numberOf(id));
+    if (agent != agents_.end()) agent->second->send(text);
   }
 }
 
@@ -129,6 +141,8 @@ void CommServer::start(std::uint64_t id, std::string_view what) {
     const std::string type(name);
     const auto known = types_.find(type);
     if (known == types_.end()) throw Error(fmt::format("there is no agent type '{}'", type));
+    if (agents_.size() >= static_cast<std::size_t>(options_.most))
+      throw Error(fmt::format("this communication server runs {} agents already (--most)", options_.most));
     const std::string log = options_.logs.empty() ? std::string() : fmt::format("{}/agent{}", options_.logs, id);
     agents_[id] = startAgent(known->second, static_cast<int>(numberOf(number)), log);
   } catch (const std::exception& e) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "agent_process.h"
 #include "comm_channel.h"
@@ -18,8 +19,8 @@ class CommServer {
  public:
   struct Options {
     std::string host = "127.0.0.1", database, logs, token, name;
-    int port = 12000;
-    double patience = 30;  ///< how long the simulator may be away [s]
+    int port = 12000, most = 100;  ///< most: agents at a time
+    double patience = 30;          ///< how long the simulator may be away [s]
   };
   /// Throws Error if the database cannot be read.
   explicit CommServer(Options options);
@@ -34,6 +35,7 @@ class CommServer {
   /// Tries once; nullptr: it cannot be reached.
   std::unique_ptr<FrameStream> open() const;
   void obey();
+  void obey(std::string_view message);
   void report();
   void wait() const;
   void start(std::uint64_t id, std::string_view what);
@@ -44,7 +46,7 @@ class CommServer {
   CommHello hello_;
   CommChannel channel_;
   std::map<std::uint64_t, std::unique_ptr<AgentLink>> agents_;  ///< by id
-  bool over_ = false;
+  bool over_ = false, confused_ = false;
   std::string refused_;
   volatile int stopped_ = 0;
 };

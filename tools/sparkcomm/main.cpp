@@ -33,6 +33,9 @@ int main(int argc, char** argv) {
   app.add_flag("--force", force, "Replace files of --logs that exist");
   app.add_option("--token", options.token, "What the simulator wants to hear");
   app.add_option("--name", options.name, "How the simulator names this server")->capture_default_str();
+  app.add_option("--most", options.most, "Most agents that it runs at a time")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
   app.add_option("--patience", options.patience, "How long the simulator may be away [s]")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -13,6 +13,7 @@
 
 #include "control_connection.h"
 #include "print.h"
+#include "spark/printable.h"
 
 // Exit codes: 0: done; 1: no simulation was found, it returned an error, or stdout cannot be written; 2: the command
 // line is wrong.
@@ -64,8 +65,9 @@ std::string chooseSocket(const std::string& socket, int pid, double patience) {
       fmt::format("several simulations are running; choose one with --socket:\n  {}", fmt::join(all, "\n  ")));
 }
 
+/// Names and values are of others: agents, teams, hosts that are mounted.
 void print(const std::string& text) {
-  if (std::fputs(text.c_str(), stdout) < 0 || std::fflush(stdout) != 0)
+  if (std::fputs(spark::printable(text).c_str(), stdout) < 0 || std::fflush(stdout) != 0)
     throw std::runtime_error(fmt::format("cannot write to stdout: {}", std::strerror(errno)));
 }
 
@@ -196,7 +198,7 @@ int main(int argc, char** argv) {
            {std::filesystem::absolute(target).lexically_normal().string(), force ? "true" : "false"});
     if (*plugins) print(pluginsText(simulation.ask({{"do", "plugins"}})["plugins"]));
   } catch (const std::exception& e) {
-    fmt::print(stderr, "sparkctl: {}\n", e.what());
+    fmt::print(stderr, "sparkctl: {}\n", spark::printable(e.what()));
     return 1;
   }
   return 0;

@@ -20,6 +20,7 @@
 #include "recorded_run.h"
 #include "spark/error.h"
 #include "spark/output_file.h"
+#include "spark/printable.h"
 #include "state_at.h"
 #include "status_line.h"
 
@@ -95,7 +96,7 @@ void orExit(int code, F step) {
   try {
     step();
   } catch (const std::exception& e) {
-    sparkhost::printError(fmt::format("sparkhost: {}\n", e.what()));
+    sparkhost::printError(fmt::format("sparkhost: {}\n", spark::printable(e.what())));  // it may quote another host
     throw Exit{code};
   }
 }

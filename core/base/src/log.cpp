@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "spark/error.h"
+#include "spark/printable.h"
 
 namespace spark {
 
@@ -91,19 +92,10 @@ void Log::updateLowest() {
 void Log::write(Level level, std::string_view line) {
   if (level == Level::error) errors_.fetch_add(1, std::memory_order_relaxed);
   if (!enabled(level)) return;
-  std::string clean;
-  clean.reserve(line.size());
-  for (std::size_t i = 0; i < line.size(); ++i) {
-    const char c = line[i];
-    const auto byte = static_cast<unsigned char>(c);
-    // Lines after the first are indented, so that text from a client cannot imitate another log message.
-    if (byte == '\n')
-      clean += i + 1 < line.size() && line[i + 1] == ' ' ? "\n" : "\n  ";
-    else if (byte == '\t' || (byte >= 0x20 && byte != 0x7f))
-      clean += c;
-    else
-      clean += fmt::format("\\x{:02x}", byte);
-  }
+  std::string clean = printable(line);
+  // Lines after the first are indented, so that text from a client cannot imitate another log message.
+  for (std::size_t at = 0; (at = clean.find('\n', at)) != std::string::npos; ++at)
+    if (at + 1 == clean.size() || clean[at + 1] != ' ') clean.insert(at + 1, "  ");
   const std::lock_guard lock(impl_->mutex);
   for (const Impl::Further& f : impl_->further)
     if (level >= f.level) f.sink(level, clean);
