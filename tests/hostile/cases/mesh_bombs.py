@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# finding: assets
+# row: B4
 # input: a collider has a Collada file of 4 KB in which each of 26 nodes refers twice to the next; twenty more have the same
 # right: it is refused with the reason, the host stays small, and the file is read once
 # slow: yes

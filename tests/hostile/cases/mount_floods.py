@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# finding: mount
+# row: B3
 # input: a host mounts another one that then sends without end: descriptions of classes, nodes, events, moves that are never possible with nodes behind them
 # right: the simulation goes on to its end, in little memory
 """Each kind is a host of its own, which answers as a host does before it floods."""

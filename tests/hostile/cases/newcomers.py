@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# finding: newcomers
+# row: B2
 # input: 64 connections that say nothing are at the port of communication servers and at that of remote hosts, and come again as soon as they are closed; then one comes that speaks
 # right: it is served
 """The match has no agents: its port for communication servers waits for one."""

@@ -1,4 +1,4 @@
--- finding: numbers
+-- row: A4
 -- input: meshes with a vertex that no triangle has, with triangles of no area, twice, inside out, in one plane, huge and tiny, under and above falling balls
 -- right: each is a collider or refused, and the balls stay where numbers are
 -- engines: all

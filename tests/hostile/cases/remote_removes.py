@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-# finding: remote
+# row: B5
 # input: a host that has the token removes servers, and what is below and above them, while an agent is connected
 # right: it is refused, the agent is served, and what is not of servers can be removed
 """One agent of a sphere match, and one remote host."""
