@@ -233,8 +233,8 @@ function logs()
   if host.alone then return end
   plugin "logserver"
   local server = get("/sys/server/log") or new("LogServer", "/sys/server/log")
-  if file ~= "" then server:new("FileLogSink", "file").file = file end
-  if lines > 0 then server:new("MemoryLogSink", "memory").capacity = lines end
+  if file ~= "" and not server:find("file") then server:new("FileLogSink", "file").file = file end
+  if lines > 0 and not server:find("memory") then server:new("MemoryLogSink", "memory").capacity = lines end
   return server
 end
 

@@ -29,6 +29,7 @@ class Check(unittest.TestCase):
         self.program(self.tree / "tools/lint-words", "exit 0")
         self.program(self.tree / "tools/lint", "exit 0")
         self.program(self.tree / "tests/system/uninitialised", "exit 0")
+        self.program(self.tree / "tests/reports/run.py", "exit 0")
         self.program("cmake", "exit 0")
         self.program("dpkg-query", "echo install ok installed")
         self.program("node", "echo true")
@@ -72,16 +73,16 @@ class Check(unittest.TestCase):
         self.assertEqual((self.tree / "build/check/summary-plain").read_text(), "3 passed, 0 failed, 0 skipped\n")
 
     def test_all_adds_lint_sanitizers_and_fuzzers(self):
-        self.expect(0, "7 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs")
-        self.assertEqual(len(self.stages("all")), 12)
+        self.expect(0, "8 passed, 0 failed, 0 skipped", "release build", "asan tests", "fuzz runs")
+        self.assertEqual(len(self.stages("all")), 13)
 
     def test_long_has_the_stages_of_all_and_valgrind(self):
-        self.expect(0, "8 passed, 0 failed, 0 skipped", mode="--long")
-        self.assertEqual(len(self.stages("long")), 13)
+        self.expect(0, "9 passed, 0 failed, 0 skipped", mode="--long")
+        self.assertEqual(len(self.stages("long")), 14)
 
     def test_findings_of_valgrind_are_shown(self):
         self.program(self.tree / "tests/system/uninitialised", "echo 'Use of uninitialised value of size 8'; exit 1")
-        self.expect(1, "7 passed, 1 failed, 0 skipped", "Use of uninitialised value of size 8", "valgrind: tests/system/uninitialised", mode="--long")
+        self.expect(1, "8 passed, 1 failed, 0 skipped", "Use of uninitialised value of size 8", "valgrind: tests/system/uninitialised", mode="--long")
 
     def test_time_decides_nothing(self):
         self.program("cmake", "sleep 0.5")  # a slow build
@@ -95,39 +96,39 @@ class Check(unittest.TestCase):
 
     def test_a_wrongly_formatted_file_is_named(self):
         self.program("clang-format-14", "echo 'core/kernel/src/a.cpp:3:1: error: code should be clang-formatted' >&2; exit 1")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "format: clang-format-14 -i core/kernel/src/a.cpp")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "format: clang-format-14 -i core/kernel/src/a.cpp")
 
     def test_a_word_of_soccer_is_shown_with_its_position(self):
         self.program(self.tree / "tools/lint-words", "echo \"core/kernel/src/a.cpp:3: 'ball' is soccer's\"; exit 1")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "core/kernel/src/a.cpp:3: 'ball'", "words: tools/lint-words")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "core/kernel/src/a.cpp:3: 'ball'", "words: tools/lint-words")
 
     def test_findings_of_clang_tidy_are_shown(self):
         self.program(self.tree / "tools/lint", "echo 'plugins/a.cpp:3:1: error: copied'; exit 1")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "plugins/a.cpp:3:1: error: copied", "lint: tools/lint")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "plugins/a.cpp:3:1: error: copied", "lint: tools/lint")
 
     def test_a_report_without_tests_is_a_failure(self):
         self.reports(NO_TEST, "asan")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "asan: no test ran")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "asan: no test ran")
 
     def test_no_report_is_a_failure(self):
         self.reports("", "tsan")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "tsan: ctest gave no report")
 
     def test_skipped_tests_are_counted_as_skipped(self):
         self.reports('<testsuite name="x"><testcase name="a" status="notrun"><skipped/></testcase></testsuite>', "release")
-        self.expect(0, "6 passed, 0 failed, 1 skipped")
+        self.expect(0, "7 passed, 0 failed, 1 skipped")
 
     def test_a_failing_test_is_named(self):
         self.reports('<testsuite name="x"><testcase name="a" status="fail"><failure/></testcase></testsuite>', "release")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "x: a")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "x: a")
 
     def test_a_failing_fuzzer_is_named(self):
         self.fuzzer("exit 1")
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "fuzz: fuzz-some")
 
     def test_a_missing_fuzz_program_is_a_failure(self):
         (self.tree / "build/fuzz/bin/fuzz-some").unlink()
-        self.expect(1, "6 passed, 1 failed, 0 skipped", "fuzz: there is no program")
+        self.expect(1, "7 passed, 1 failed, 0 skipped", "fuzz: there is no program")
 
 
 class Presets(unittest.TestCase):
