@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # row: 25
-# input: a client joins in lockstep without --expect, message by message: (scene ...), (init ...), (he1 ...), (syn); it thinks before each answer; the host is at nice 19 beside two busy loops
+# input: a client joins in lockstep without --expect, message by message: (scene ...), (init ...), (he1 ...), (syn); it thinks before each answer; the host is at nice 10 beside two busy loops
 # right: each time it gets the same messages in the same cycles
 """The client answers each message with one. Its first (syn) is in the fifth."""
 import json
@@ -58,7 +58,7 @@ def main():
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     programs = []
     try:
-        hosts = [subprocess.Popen(["nice", "-n", "19", Path(os.environ["SPARKBIN"]) / "sparkhost", *HOST], stdout=subprocess.PIPE, text=True) for _ in range(SESSIONS)]
+        hosts = [subprocess.Popen(["nice", "-n", "10", Path(os.environ["SPARKBIN"]) / "sparkhost", *HOST], stdout=subprocess.PIPE, text=True) for _ in range(SESSIONS)]
         programs += hosts
         ports = []
         for host in hosts:
