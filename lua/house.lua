@@ -30,8 +30,8 @@ function files()
   return server
 end
 
---- Scene server with the importers of RSG, MJCF, URDF, Webots and 3D models, and an empty active scene at /usr/scene. `--set
---- transactionalImport=true` makes all imports that fail leave the scene unchanged.
+--- Scene server with the importers of RSG, MJCF, URDF, Webots and 3D models, and an empty active scene at
+--- /usr/scene. `--set transactionalImport=true` makes all imports that fail leave the scene unchanged.
 function scene()
   local transactional = option{ name = "transactionalImport", default = "byLanguage",
                                 choices = { "byLanguage", "true", "false" },

@@ -130,7 +130,7 @@ bool Recorder::put(const Input& input) {
   return true;
 }
 
-/// The line of a request without the arguments that are secrets: whoever reads the recording must not learn them.
+/// The line of a request without the arguments that are secrets: no reader of the recording may learn them.
 std::string Recorder::withoutSecrets(std::string_view request) const {
   using Json = nlohmann::json;
   Json json = Json::parse(request, nullptr, false);

@@ -96,7 +96,7 @@ class KickEffector : public Effector, public ISceneCalls {
     if (auto* state = match_.ball()) state->kickedBy(*player->agent);
   }
 
-  /// Notes a kick that comes to nothing in play. This is no mistake: a player cannot know it before.
+  /// Notes a kick without effect during play. It is no mistake: a player cannot know it in advance.
   void miss(const soccer::Player& player, const char* why) {
     if (Log& log = kernel().log(); log.enabled(Level::debug))
       log.debug("agent {}: kick: {}", player.agent->number(), why);

@@ -19,9 +19,9 @@
 
 #include "spark/error.h"
 
-// A file is opened without O_TRUNC, locked, looked at, and only then emptied: whoever holds the lock writes, and what
-// another process has written meanwhile is seen. The lock (flock(2)) belongs to the open file, so it also keeps two
-// simulations of one process apart, and ends with the process.
+// A file is opened without O_TRUNC, locked, looked at, and only then emptied: only the holder of the lock writes, and
+// what another process has written meanwhile is seen. The lock (flock(2)) belongs to the open file, so it also keeps
+// two simulations of one process apart, and ends with the process.
 
 namespace fs = std::filesystem;
 

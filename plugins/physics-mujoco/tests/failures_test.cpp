@@ -11,7 +11,7 @@ using namespace spark::mujoco;
 
 namespace {
 
-/// A ball in a hinge, with room for so many numbers in MuJoCo's stack.
+/// A ball in a hinge, with room for a given count of numbers in MuJoCo's stack.
 ModelPointer ballWithStack(int numbers) {
   return compile("<mujoco><size nstack='" + std::to_string(numbers) +
                  "'/><worldbody><body><joint axis='0 1 0'/><geom size='0.1' pos='1 0 0'/></body></worldbody></mujoco>");

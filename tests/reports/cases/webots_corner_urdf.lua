@@ -4,19 +4,5 @@
 -- engines: all
 -- args: --duration 0.2
 -- never: is not supported
-include "../lib/judge.lua"
-include "../lib/senses.lua"
-files() scene() physics(engineOption()) simulation() agents{ port = 0 }
-plugin "sensors" plugin "effectors"
-local robot = new("AgentAspect", "/usr/scene/space/robot")
-robot:importScene("webots_corner.urdf")
-watch(robot, function(seen, time)
-  if not isAt(time, 0.1) then return end
-  local a, w, d = seen["ACC rolled_acc"], seen["GYR rolled_gyro"], seen["LDR ahead"]
-  judge("all are there", a and w and d)
-  for i = 1, 3 do
-    near("acceleration " .. i, a[3][i + 1], i == 2 and 9.81 or 0, 1e-3)
-    near("rate " .. i, w[3][i + 1], 0, 1e-9)
-  end
-  near("distance", d[3][2], 2.5, 0.011)
-end)
+include "../lib/corner.lua"
+judgeCorner({ "ACC rolled_acc", "GYR rolled_gyro", "LDR ahead" }, "webots_corner.urdf")
