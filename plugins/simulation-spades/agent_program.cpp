@@ -39,6 +39,7 @@ struct Actions {
 /// plugin has opened without O_CLOEXEC.
 void closeOthers(posix_spawn_file_actions_t& actions, const std::vector<AgentProgram::Descriptor>& given) {
   std::vector<int> kept;
+  kept.reserve(given.size());
   for (const auto& [ours, theirs] : given) kept.push_back(theirs);
   std::sort(kept.begin(), kept.end());
   int next = 3;

@@ -71,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   remote::Mirror mirror(mount);
   remote::Session session(host, 1, nullptr, "fuzz");
   try {
-    mirror.follow(remote::decode({reinterpret_cast<const char*>(data), size}));
+    mirror.follow(remote::decode({reinterpret_cast<const char*>(data), size}), size);
   } catch (const Error&) {
     // Most inputs are no message.
   }
@@ -79,9 +79,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   Source source{data, size};
   for (int n = 0; n < 100 && source.left > 0 && !session.isLost(); ++n) {
     const List message = source.message();
-    session.replay(remote::encode(message));
+    const std::string bytes = remote::encode(message);
+    session.replay(bytes);
     try {
-      mirror.follow(message);
+      mirror.follow(message, bytes.size());
     } catch (const Error&) {
       // The other host is given up.
     }
