@@ -123,7 +123,7 @@ std::string Participant::receive(std::string_view message, std::size_t maxPendin
   const ReadResult result = parser_->parse(message, actions);
   if (!result.message.empty())
     warn(log, cycle,
-         fmt::format("{} at {}:{}; the rest of that message is ignored.", result.message, result.line, result.column));
+         fmt::format("{} at {}:{}; that predicate is ignored.", result.message, result.line, result.column));
   bool sync = false;
   for (const Element e : actions) {
     if (!e.isList())

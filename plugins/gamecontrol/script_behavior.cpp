@@ -1,6 +1,7 @@
 #include "gamecontrol/script_behavior.h"
 
 #include "gamecontrol/script_event.h"
+#include "spark/read_message.h"
 
 namespace spark {
 
@@ -40,7 +41,7 @@ void ScriptBehavior::run(std::string_view channel, const Value* data, Predicates
   const Ref<ScriptBehavior> self(this);  // its script may delete it
   kernel().events().channel(channel).emitAt(*this, event);
   if (!self) return;
-  const ReadResult result = readSexp(actions_, actions);
+  const ReadResult result = readMessage(actions_, actions);
   if (!result.message.empty())
     kernel().log().warning("{}.actions: {} at {}:{}.", path(), result.message, result.line, result.column);
 }

@@ -20,11 +20,20 @@ void spend(const Value& value, std::int64_t& left) {
     if (left >= 0) spend(v, left);
 }
 
+/// whyUnwritable(), but any text can be sent: it is quoted if it is no word.
+std::string whyNoPercept(const Value& value) {
+  if (value.isString()) return {};
+  if (!value.isList()) return whyUnwritable(value);
+  for (const Value& v : value.toList())
+    if (std::string why = whyNoPercept(v); !why.empty()) return why;
+  return {};
+}
+
 /// "", or why the percept cannot be sent.
 std::string whyNot(const Value& percept) {
   std::int64_t left = kMost;
   spend(percept, left);
-  return left < 0 ? fmt::format("expected at most {} bytes, found more", kMost) : whyUnwritable(percept);
+  return left < 0 ? fmt::format("expected at most {} bytes, found more", kMost) : whyNoPercept(percept);
 }
 }  // namespace
 

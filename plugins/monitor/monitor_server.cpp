@@ -8,6 +8,7 @@
 #include "script_item.h"
 #include "spark/error.h"
 #include "spark/plugin.h"
+#include "spark/read_message.h"
 
 namespace spark {
 
@@ -68,7 +69,7 @@ std::string MonitorServer::queueCommands(IParser* parser, std::string_view from,
   updateKnownCommands();
   if (commands_.size() >= kMaxQueuedTokens) return dropMessage(from);
   const std::uint32_t before = commands_.size();
-  const ReadResult result = parser ? parser->parse(message, commands_) : readSexp(message, commands_);
+  const ReadResult result = parser ? parser->parse(message, commands_) : readMessage(message, commands_);
   if (commands_.size() > kMaxQueuedTokens) {
     commands_.truncate(before);
     return dropMessage(from);
@@ -85,7 +86,7 @@ std::string MonitorServer::queueCommands(IParser* parser, std::string_view from,
     }
     return mistake;
   }
-  kernel().log().debug("{}: from {}: {}:{}: {}; what came before it counts", path(), from, result.line, result.column,
+  kernel().log().debug("{}: from {}: {}:{}: {}; the other commands count", path(), from, result.line, result.column,
                        result.message);
   return fmt::format("{}:{}: {}", result.line, result.column, result.message);
 }

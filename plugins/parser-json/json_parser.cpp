@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -19,7 +21,26 @@ bool isPlain(std::string_view text) {
   return true;
 }
 
-void writeText(std::string_view text, ByteWriter& out) {
+/// Writes a character U+0000 to U+00FF for each byte.
+void writeBytes(std::string_view bytes, ByteWriter& out) {
+  out.put('"');
+  for (const char c : bytes) {
+    if (isPlain({&c, 1}))
+      out.put(c);
+    else
+      out.put(fmt::format("\\u{:04x}", static_cast<unsigned char>(c)));
+  }
+  out.put('"');
+}
+
+/// How values are written.
+struct Style {
+  int decimals;
+  bool binary;
+};
+
+void writeText(std::string_view text, const Style& style, ByteWriter& out) {
+  if (!isPlain(text) && style.binary) return writeBytes(text, out);
   if (!isPlain(text))
     return out.put(nlohmann::json(text).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
   out.put('"');
@@ -34,13 +55,13 @@ void writeNumber(double v, int decimals, ByteWriter& out) {
   out.end(std::to_chars(to, to + kGeneralRoom, v).ptr);
 }
 
-void writeElement(const Element& e, int decimals, ByteWriter& out) {
+void writeElement(const Element& e, const Style& style, ByteWriter& out) {
   const Token& t = e.token();
   switch (t.kind) {
     case Token::Kind::text:
-      return writeText(e.text(), out);
+      return writeText(e.text(), style, out);
     case Token::Kind::number:
-      return writeNumber(t.number, decimals, out);
+      return writeNumber(t.number, style.decimals, out);
     case Token::Kind::integer:
       return out.integer(t.integer);
     case Token::Kind::list:
@@ -51,7 +72,7 @@ void writeElement(const Element& e, int decimals, ByteWriter& out) {
   for (const Element inner : e) {
     if (!first) out.put(',');
     first = false;
-    writeElement(inner, decimals, out);
+    writeElement(inner, style, out);
   }
   out.put(']');
 }
@@ -67,11 +88,15 @@ class JsonParser : public Leaf, public IParser {
     d.property("decimals", &JsonParser::decimals_)
         .range(-1, 9)
         .doc("Decimals of numbers that are not integers, as in S-expressions; -1: all digits.");
+    d.property("binary", &JsonParser::binary_)
+        .doc(
+            "Texts are bytes, each a character U+0000 to U+00FF. Otherwise they are UTF-8, and what is not becomes "
+            "U+FFFD.");
     d.property("maxDepth", &JsonParser::maxDepth_).range(1, 1000).doc("Messages with deeper nesting are refused.");
     d.property("maxTokens", &JsonParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
     d.method("parse", &JsonParser::parseText)
         .parameters({"text"})
-        .doc("Parses a text; returns its top-level elements up to the first error.");
+        .doc("Parses a text; returns its top-level elements without those that have a mistake.");
     d.method("write", &JsonParser::writeText)
         .parameters({"elements"})
         .doc("Writes a list of top-level elements as a message.");
@@ -79,7 +104,8 @@ class JsonParser : public Leaf, public IParser {
   }
 
   ReadResult parse(std::string_view message, Predicates& out) override {
-    return json::read(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_)});
+    return json::read(message, out, {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_)},
+                      binary_);
   }
   void write(const Predicates& predicates, std::string& bytes) override {
     ByteWriter out(bytes);
@@ -88,7 +114,7 @@ class JsonParser : public Leaf, public IParser {
     for (const Element e : predicates) {
       if (!first) out.put(',');
       first = false;
-      writeElement(e, decimals_, out);
+      writeElement(e, {decimals_, binary_}, out);
     }
     out.put(']');
   }
@@ -106,6 +132,7 @@ class JsonParser : public Leaf, public IParser {
     write(in, out);
     return out;
   }
+  bool binary_ = false;
   int decimals_ = 2, maxDepth_ = 64, maxTokens_ = 65536;
 };
 

@@ -1,6 +1,7 @@
 #include "api/agents.h"
 #include "spark/describe.h"
 #include "spark/plugin.h"
+#include "spark/read_message.h"
 
 namespace spark {
 
@@ -19,7 +20,7 @@ class SexpParser : public Leaf, public IParser {
     d.property("maxTokens", &SexpParser::maxTokens_).range(1, 1e6).doc("Longer messages are refused.");
     d.method("parse", &SexpParser::parseText)
         .parameters({"text"})
-        .doc("Parses a text; returns its top-level elements up to the first error.");
+        .doc("Parses a text; returns its top-level elements without those that have a mistake.");
     d.method("write", &SexpParser::writeText)
         .parameters({"elements"})
         .doc("Writes a list of top-level elements as a message.");
@@ -27,8 +28,8 @@ class SexpParser : public Leaf, public IParser {
   }
 
   ReadResult parse(std::string_view message, Predicates& out) override {
-    return readSexp(message, out,
-                    {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_), false});
+    return readMessage(message, out,
+                       {static_cast<std::uint32_t>(maxDepth_), static_cast<std::uint32_t>(maxTokens_), false});
   }
   void write(const Predicates& predicates, std::string& out) override {
     writeSexp(predicates, decimals_, out, kLateClocks);

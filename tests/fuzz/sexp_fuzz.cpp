@@ -3,6 +3,7 @@
 #include <cstdlib>
 
 #include "fuzz/check_tree.h"
+#include "spark/read_message.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string_view bytes(reinterpret_cast<const char*>(data), size);
@@ -14,6 +15,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   spark::fuzz::checkTree(read);
   std::string text;
   spark::writeSexp(read, 2, text);
+
+  // Reading around the mistakes of a message gives at least what is in front of the first.
+  spark::Predicates around;
+  if (spark::readMessage(bytes, around, limits).consumed > size || around.size() > limits.maxTokens) std::abort();
+  if (around.size() < read.size()) std::abort();
+  spark::fuzz::checkTree(around);
 
   // A reader with a maximum number of expressions stops at the end of an expression.
   spark::Predicates one;

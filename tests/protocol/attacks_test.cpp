@@ -44,7 +44,7 @@ TEST_CASE("Each kind of mistake of an agent is logged once, and again for anothe
   }
 }
 
-TEST_CASE("A message with an error is applied up to the error, and the connection stays open") {
+TEST_CASE("A mistake in a message costs its predicate, and the connection stays open") {
   Arena a;
   Client c = robot(a);
   c.send("(he1 1))(he1 2)");
@@ -54,8 +54,8 @@ TEST_CASE("A message with an error is applied up to the error, and the connectio
   c.send("\x01\x02\xff garbage");
   c.send("(he1 4)");
   applyActions(a, 3);
-  REQUIRE(actionLog() == ActionLog{"1 he1 1", "1 he1 3", "1 he1 4"});
-  REQUIRE(a.logged("the rest of that message is ignored"));
+  REQUIRE(actionLog() == ActionLog{"1 he1 1", "1 he1 2", "1 he1 3", "1 he1 4"});
+  REQUIRE(a.logged("that predicate is ignored"));
 }
 
 TEST_CASE("200,000 nested parentheses over several messages close at most that connection") {

@@ -86,8 +86,21 @@ TEST_CASE("a ScriptPerceptor whose script returns nil senses nothing, and other 
                       !Contains("eye"));
 }
 
+TEST_CASE("a text of a percept that is no word is sent in quotes") {
+  for (const auto& [returned, sent] :
+       std::vector<std::pair<std::string, std::string>>{{"'two words'", R"((eye "two words"))"},
+                                                        {"{'a', {1, '(b'}}", R"((eye a (1 "(b")))"},
+                                                        {"{''}", R"((eye ""))"},
+                                                        {R"('a"\\b')", R"((eye "a\"\\b"))"}}) {
+    ScriptArena a(
+        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
+        returned + " end)");
+    CHECK_THAT(a.percepts(), Contains(sent));
+  }
+}
+
 TEST_CASE("a percept that cannot be sent is logged once and left out") {
-  for (const char* returned : {"'two words'", "{'a', {1, '(b'}}", "0/0", "{''}"}) {
+  for (const char* returned : {"0/0", "{1, {'a', 1/0}}", "('a'):rep(70000)"}) {
     ScriptArena a(
         "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
         std::string(returned) + " end)");

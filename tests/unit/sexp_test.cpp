@@ -234,12 +234,13 @@ TEST_CASE("Messages are written as the installed base expects them") {
   p.open("GYR").open("n").add("torso").close().open("rt").add(0.0).add(-0.001).add(-1.005).close().close();
   p.open("GS").pair("sl", 3).pair("pm", "BeforeKickOff").close();
   p.open("empty").open("inner").close().close();
-  p.open("raw").add("two words", true).close();
+  p.open("raw").add("two words").close();
+  p.open("quoted").add("two words", true).close();
   std::string out;
   writeSexp(p, 2, out);
   CHECK(out ==
         "(See )(time (now 12.35))(GYR (n torso) (rt 0.00 -0.00 -1.00))(GS (sl 3) (pm BeforeKickOff))(empty "
-        "(inner))(raw two words)");
+        "(inner))(raw two words)(quoted \"two words\")");
   out.clear();
   Predicates three;
   three.open("a").add(1.0f / 3.0).close();
@@ -276,7 +277,7 @@ TEST_CASE("Predicates can be copied, truncated and reused") {
   copy.append(*p.begin());
   std::string out;
   writeSexp(copy, 2, out);
-  CHECK(out == "(a (b 1) c d)");
+  CHECK(out == "(a (b 1) \"c d\")");
   CHECK(copy.tokens()[5].quoted);
   p.truncate(0);
   CHECK(p.empty());
@@ -315,7 +316,7 @@ TEST_CASE("An atom can be replaced by a number, and its neighbours stay as they 
 
 TEST_CASE("Predicates are saved as the values that they are, and loaded") {
   Predicates p;
-  readSexp("(a (b 1) () \"a text of more than a word\") atom ()", p);
+  readSexp("(a (b 1) () a-text-of-more-than-a-few-letters) atom ()", p);
   p.open("n").add(-2.5).add(3).add(std::int64_t{1} << 60).close();
   const auto saved = [](auto... write) {
     StateWriter out(true);
@@ -332,6 +333,28 @@ TEST_CASE("Predicates are saved as the values that they are, and loaded") {
   CHECK(Value(toList(back)) == Value(toList(p)));
   StateReader early(std::string_view(direct.first).substr(0, 40));
   CHECK_THROWS_AS(loadPredicates(early, back), Error);
+}
+
+TEST_CASE("A text in quotes is one in quotes after it was saved and loaded, and no other is") {
+  Predicates p, back;
+  readSexp("(a \"5\" 5 (\"b c\"))", p);
+  p.open("d").add("raw text").close();
+  StateWriter out(true);
+  savePredicates(p, out);
+  const std::string bytes = out.bytes();
+  StateReader in(bytes);
+  loadPredicates(in, back);
+  std::string text;
+  writeSexp(back, 2, text);
+  CHECK(text == "(a \"5\" 5 (\"b c\"))(d raw text)");
+}
+
+TEST_CASE("Values that are no words are written in quotes") {
+  Predicates p;
+  append(List{List{"a", "b c", "", "(", "x;y", "word"}}, p);
+  std::string out;
+  writeSexp(p, 2, out);
+  CHECK(out == "(a \"b c\" \"\" \"(\" \"x;y\" word)");
 }
 
 TEST_CASE("Predicates can be converted to values and back") {

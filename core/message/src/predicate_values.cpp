@@ -36,7 +36,7 @@ void appendValue(const Value& v, Predicates& out) {
       out.add(v.toInteger());
       return;
     case Value::Type::string:
-      out.add(v.toString());
+      out.add(v.toString(), !isWord(v.toString()));
       return;
     case Value::Type::nil:
     case Value::Type::boolean:
@@ -52,7 +52,8 @@ void appendValue(const Value& v, Predicates& out) {
 
 void writeType(Value::Type type, StateWriter& out) { out.write(static_cast<std::int64_t>(type)); }
 
-/// Writes a list as StateWriter writes a value of that type.
+/// Writes a list as StateWriter writes a value of that type. A text in quotes is the list of nil, which no other
+/// element is, and the text.
 template <class Range>
 void saveList(const Range& elements, StateWriter& out) {
   std::int64_t size = 0;
@@ -71,11 +72,32 @@ void saveList(const Range& elements, StateWriter& out) {
         out.write(t.integer);
         break;
       case Token::Kind::text:
+        if (t.quoted) {
+          writeType(Value::Type::list, out);
+          out.write(std::int64_t{2});
+          writeType(Value::Type::nil, out);
+        }
         writeType(Value::Type::string, out);
         out.write(e.text());
         break;
       case Token::Kind::list:
         saveList(e, out);
+    }
+  }
+}
+
+void loadList(const List& saved, Predicates& to) {
+  for (const Value& v : saved) {
+    if (v.isString()) {
+      to.add(v.toString());
+    } else if (!v.isList()) {
+      appendValue(v, to);
+    } else if (const List& inner = v.toList(); inner.size() == 2 && inner[0].isNil()) {
+      to.add(inner[1].toString(), true);
+    } else {
+      to.open();
+      loadList(inner, to);
+      to.close();
     }
   }
 }
@@ -95,7 +117,7 @@ void savePredicates(const Predicates& predicates, StateWriter& out) { saveList(p
 
 void loadPredicates(StateReader& in, Predicates& to) {
   to.clear();
-  append(in.readValue().toList(), to);
+  loadList(in.readValue().toList(), to);
 }
 
 bool isWord(std::string_view text) {

@@ -5,10 +5,12 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "spark/predicates.h"
+#include "spark/read_message.h"
 
 namespace spark {
 
@@ -27,6 +29,9 @@ constexpr auto kClasses = [] {
 }();
 bool is(Class what, char c) { return kClasses[static_cast<unsigned char>(c)] & what; }
 bool isEscapable(char c) { return c == '"' || c == '\'' || c == '(' || c == ')' || c == '\\'; }
+
+/// The most mistakes of a message around which it is read. Each may cost a pass over the message.
+constexpr int kMostMistakes = 100;
 
 /// A list without its ')', and the line at which this was detected.
 struct Unclosed {
@@ -115,21 +120,45 @@ std::optional<Unclosed> findUnclosed(std::string_view bytes) { return Indentatio
 class Reader {
  public:
   Reader(std::string_view bytes, Predicates& out, const ReadLimits& limits)
-      : bytes_(bytes), out_(out), limits_(limits) {}
+      : bytes_(bytes), out_(out), limits_(limits), firstToken_(out.size()) {}
 
+  /// Reads at most `maxExpressions`, 0 is all, up to the first mistake.
   ReadResult read(std::size_t maxExpressions) {
-    std::size_t complete = 0;  // top-level expressions
-    const std::uint32_t firstToken = out_.size();
-    std::uint32_t expressionStart = firstToken;  // token at which the current top-level expression begins
+    readOn(maxExpressions);
+    result_.consumed = at_;
+    return std::move(result_);
+  }
+
+  /// Reads all top-level expressions but those with a mistake.
+  ReadResult readAround() {
+    readOn(0);
+    ReadResult first = result_;
+    for (int mistakes = 1; failed_ && !isFull_ && mistakes < kMostMistakes && skipExpression(); ++mistakes) {
+      failed_ = false;
+      readOn(0);
+    }
+    first.consumed = at_;
+    return first;
+  }
+
+ private:
+  struct Place {
+    std::uint32_t line = 1, column = 1;
+  };
+  void readOn(std::size_t maxExpressions) {
+    std::size_t complete = 0;                     // top-level expressions
+    std::uint32_t expressionStart = out_.size();  // token at which the current top-level expression begins
     Place expressionPlace;
+    depth_ = 0;
     while (!failed_) {
       if (depth_ == 0 && maxExpressions && complete == maxExpressions) break;
       skipBlanksAndComments();
       if (at_ >= bytes_.size()) break;
       const char c = bytes_[at_];
       const Place place = here();
-      if (depth_ == 0) expressionStart = out_.size(), expressionPlace = place;
-      if (c != ')' && out_.size() - firstToken >= limits_.maxTokens) {
+      if (depth_ == 0) expressionStart = out_.size(), expressionPlace = place, begin_ = {at_, lineStart_, line_};
+      if (c != ')' && out_.size() - firstToken_ >= limits_.maxTokens) {
+        isFull_ = true;
         fail(fmt::format("more than {} tokens", limits_.maxTokens), place);
         break;
       }
@@ -163,14 +192,38 @@ class Reader {
     // Complete expressions stay, an incomplete one is removed.
     if (!failed_ && depth_ > 0) failUnclosed(expressionPlace);
     if (failed_) out_.truncate(expressionStart);
-    result_.consumed = at_;
-    return std::move(result_);
   }
-
- private:
-  struct Place {
-    std::uint32_t line = 1, column = 1;
-  };
+  /// Moves behind the top-level expression that has a mistake. False if its end cannot be found.
+  bool skipExpression() {
+    // A quote that does not end may be the mistake. Then brackets count even behind quotes, and so they do from then
+    // on.
+    std::tie(at_, lineStart_, line_) = begin_;
+    return (!ignoresQuotes_ && skipTo(findEnd(true))) || (ignoresQuotes_ = true, skipTo(findEnd(false)));
+  }
+  /// Moves to a byte behind the present one, which may be in another line. False for npos.
+  bool skipTo(std::size_t end) {
+    if (end == std::string_view::npos) return false;
+    while (at_ < end) step();
+    return true;
+  }
+  /// The byte behind the list that begins here, npos if it has no end; where no list begins, the next one.
+  std::size_t findEnd(bool quotes) const {
+    if (bytes_[at_] != '(') return std::min(bytes_.find('(', at_), bytes_.size());
+    std::size_t depth = 0;
+    bool isQuoted = false;
+    for (std::size_t i = at_; i < bytes_.size(); ++i) {
+      const char c = bytes_[i];
+      if (c == '\\' && i + 1 < bytes_.size() && isEscapable(bytes_[i + 1]))
+        ++i;
+      else if (quotes && c == '"')
+        isQuoted = !isQuoted;
+      else if (!isQuoted && c == '(')
+        ++depth;
+      else if (!isQuoted && c == ')' && --depth == 0)
+        return i + 1;
+    }
+    return std::string_view::npos;
+  }
   Place here() const { return {line_, static_cast<std::uint32_t>(at_ - lineStart_) + 1}; }
   void fail(std::string message, Place place) {
     failed_ = true;
@@ -265,10 +318,15 @@ class Reader {
   Predicates& out_;
   const ReadLimits& limits_;
   ReadResult result_;
+  const std::uint32_t firstToken_;  ///< size of `out_` at the beginning
   std::string text_;
   std::size_t at_ = 0, lineStart_ = 0;
+  /// at_, lineStart_ and line_ where the current top-level expression begins.
+  std::tuple<std::size_t, std::size_t, std::uint32_t> begin_{0, 0, 1};
   std::uint32_t line_ = 1, depth_ = 0;
   bool failed_ = false;
+  bool isFull_ = false;         ///< the limit of tokens is reached
+  bool ignoresQuotes_ = false;  ///< to find the end of an expression with a mistake
 };
 
 /// Buffer size for any token except a long text, with the brackets and blanks around it [bytes].
@@ -279,6 +337,18 @@ struct Style {
   int decimals;
   DoubleRange doubles;
 };
+
+/// Writes a text in quotes, as the reader reads it back byte for byte.
+void putQuoted(std::string_view text, ByteWriter& out) {
+  out.put('"');
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of("\"\\", begin), text.size());
+    out.put(text.substr(begin, end - begin));
+    if (end < text.size()) out.put('\\'), out.put(text[end]);
+    begin = end + 1;
+  }
+  out.put('"');
+}
 
 /// The shortest digits that are read back as the same number.
 char* putShortest(char* at, double v) {
@@ -296,7 +366,11 @@ char* writeElements(const Predicates& from, const Token* t, const Token* end, co
     const Token* const next = t + (t->kind == Token::Kind::list ? t->size : 1);
     switch (t->kind) {
       case Token::Kind::text:
-        if (t->size <= Token::kShort) {
+        if (t->quoted) {
+          out.end(at);
+          putQuoted(from.textOf(*t), out);
+          at = out.room(kTokenRoom);
+        } else if (t->size <= Token::kShort) {
           std::memcpy(at, t->letters, Token::kShort);
           at += t->size;
         } else {
@@ -330,6 +404,10 @@ char* writeElements(const Predicates& from, const Token* t, const Token* end, co
 
 ReadResult readSexp(std::string_view bytes, Predicates& out, const ReadLimits& limits, std::size_t maxExpressions) {
   return Reader(bytes, out, limits).read(maxExpressions);
+}
+
+ReadResult readMessage(std::string_view bytes, Predicates& out, const ReadLimits& limits) {
+  return Reader(bytes, out, limits).readAround();
 }
 
 void writeSexp(const Predicates& predicates, int decimals, std::string& bytes, DoubleRange doubles) {

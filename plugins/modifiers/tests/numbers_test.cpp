@@ -82,7 +82,7 @@ TEST_CASE("In actions texts and integers can be numbers; the predicate is none, 
   bench.add("Bias", {{"mean", 0.5}});
   CHECK(bench.act("(he1 1 -2e0 fast (3))") == "(he1 1.50 -1.50 fast (3.50))");
   CHECK(bench.act("(12 1)(12 2)") == "(12 1.50)(12 2.50)");
-  CHECK(bench.act("(say \"a long text with 3 words\")") == "(say a long text with 3 words)");
+  CHECK(bench.act("(say \"a long text with 3 words\")") == "(say \"a long text with 3 words\")");
   Predicates integer;
   integer.open("he1").add(1).close();
   bench.pass(integer, Signal::Kind::action);

@@ -61,7 +61,7 @@ TEST_CASE("JSON numbers give number tokens") {
   REQUIRE(list.at(2).integer() == 7);
 }
 
-TEST_CASE("Invalid JSON keeps what is complete before the error and reports the reason") {
+TEST_CASE("Invalid JSON costs its predicate and reports the reason") {
   Fixture f;
   const auto [text, kept, what] = GENERATE(table<std::string, std::string, std::string>({
       {R"(["a"]["b")", "(a )", "expected"},
@@ -73,6 +73,10 @@ TEST_CASE("Invalid JSON keeps what is complete before the error and reports the 
       {"[\"a\",\"\xff\xfe\"]", "", "UTF-8"},
       {R"(["a",1e999])", "", "overflow"},
       {R"(["a",NaN])", "", "invalid literal"},
+      {"[\"say\",\"\x01\"][\"syn\"]", "(syn )", "control character"},
+      {R"([["a"],["say",x\y],["b"],["say",{"c":[1]}],["syn"]])", "(a )(b )(syn )", "invalid literal"},
+      {R"([["say","x],["b"]]["syn"])", "(b )(syn )", "invalid literal"},
+      {R"(["a"]] , nonsense ["syn"])", "(a )(syn )", "unexpected"},
   }));
   CAPTURE(text);
   std::string error;
@@ -103,4 +107,22 @@ TEST_CASE("Any text is written as valid UTF-8") {
   Predicates p;
   p.open("hear").add("a\"b\\c\n").add("\xff").add("h\xc3\xa9").close();
   REQUIRE(f.written(p) == "[[\"hear\",\"a\\\"b\\\\c\\n\",\"\xef\xbf\xbd\",\"h\xc3\xa9\"]]");
+}
+
+TEST_CASE("With `binary` a text brings every byte in both directions") {
+  Fixture f;
+  std::string bytes, message = "[\"say\",\"";
+  for (int c = 0; c < 256; ++c) {
+    bytes += static_cast<char>(c);
+    message += fmt::format("\\u{:04x}", c);
+  }
+  setProperty(*f.host.kernel.root().find("/usr/parser"), "binary", true);
+  Predicates p, back;
+  REQUIRE(f.parser->parse(message + "\"]", p).message == "");
+  REQUIRE((*p.begin()).at(1).text() == bytes);
+  REQUIRE(f.parser->parse(f.written(p), back).message == "");
+  REQUIRE((*back.begin()).at(1).text() == bytes);
+  std::string error;
+  REQUIRE(f.read(R"([["say","\u0100"],["say","\u00ff"]])", &error) == "(say \xff)");
+  REQUIRE_THAT(error, Catch::Contains("U+00FF"));
 }

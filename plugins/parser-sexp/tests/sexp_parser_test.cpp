@@ -43,18 +43,58 @@ TEST_CASE("Not-a-number and infinity are spelled as in C") {
   REQUIRE(f.written(p) == "(a nan inf -inf)");
 }
 
-TEST_CASE("A message with an error keeps what is complete before it") {
+TEST_CASE("A mistake in a message costs its predicate alone") {
   SexpFixture f;
   const auto [text, kept] = GENERATE(table<std::string, std::string>({{"(a 1)(b 2", "(a 1)"},
-                                                                      {"(a 1))(b 2)", "(a 1)"},
-                                                                      {")(he1 2)", ""},
+                                                                      {"(a 1))(b 2)", "(a 1)(b 2)"},
+                                                                      {")(he1 2)", "(he1 2)"},
                                                                       {"(a \"x", ""},
-                                                                      {"(a 1)(say ;zz)(he1 1)", "(a 1)"},
-                                                                      {"(a 1)\x01(b 2)", "(a 1)"}}));
+                                                                      {"(a \"x)(syn)", "(syn )"},
+                                                                      {"(a \x01\")\")(syn)", "(syn )"},
+                                                                      {"(a 1)(say ;zz)(he1 1)", "(a 1)(he1 1)"},
+                                                                      {"(a (b x\\)\x02) c)(syn)", "(syn )"},
+                                                                      {"\x01 a \x02(syn)", "(syn )"},
+                                                                      {"(a 1)\x01(b 2)", "(a 1)(b 2)"}}));
   Predicates p;
   CAPTURE(text);
   REQUIRE(!f.parser->parse(text, p).message.empty());
   REQUIRE(f.written(p) == kept);
+}
+
+TEST_CASE("No byte in a word takes the other predicates of its message along") {
+  SexpFixture f;
+  for (int c = 0; c < 256; ++c) {
+    if (c == '(') continue;  // a list without its end
+    const std::string message = "(first)(say a" + std::string(1, static_cast<char>(c)) + "b)(syn)";
+    Predicates p;
+    f.parser->parse(message, p);
+    CAPTURE(c);
+    std::string heads;
+    for (const Element e : p) heads += std::string(e.head()) + ' ';
+    CHECK(heads.starts_with("first "));
+    CHECK(heads.ends_with(c == ';' ? "syn " : " syn "));
+  }
+}
+
+TEST_CASE("Text in quotes is written as it is read, byte for byte") {
+  SexpFixture f;
+  std::string bytes;
+  for (int c = 0; c < 256; ++c) bytes += static_cast<char>(c);
+  for (const std::string& text : {bytes, bytes + bytes, std::string(), std::string("a b"), std::string("\"\\")}) {
+    Predicates p, back;
+    p.open("note").add(text, true).add("word").close();
+    REQUIRE(f.parser->parse(f.written(p), back).message == "");
+    REQUIRE((*back.begin()).at(1).text() == text);
+    REQUIRE((*back.begin()).at(2).text() == "word");
+  }
+}
+
+TEST_CASE("A message full of mistakes is given up, and takes little time") {
+  SexpFixture f;
+  std::string message;
+  for (int i = 0; i < 20000; ++i) message += "(\x01\")\"((((";
+  Predicates p;
+  REQUIRE(f.parser->parse(message + "(syn)", p).message.find("0x01") != std::string::npos);
 }
 
 TEST_CASE("200,000 nested lists are refused without harm") {
