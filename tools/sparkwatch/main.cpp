@@ -98,7 +98,7 @@ int main(int argc, char** argv) {
   CLI::App app("Prints where the meshes of a running host are, a JSON line for each in each message", "sparkwatch");
   app.add_option("--host", host, "The host")->capture_default_str();
   app.add_option("--port", port, "Its monitor port, with S-expressions")->capture_default_str();
-  app.add_option("--mesh", mesh, "Only meshes whose name contains this text, such as ball");
+  app.add_option("--mesh", mesh, "Only meshes whose name contains this text, such as Sphere");
   app.add_option("--messages", messages, "End after this many; 0: with the host")->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   int taken = 0, found = 0;
