@@ -9,8 +9,8 @@
 #include <chrono>
 
 #include "api/descriptors.h"
+#include "api/scene.h"
 #include "messages.h"
-#include "remote_server.h"
 #include "spark/error.h"
 #include "spark/in_use.h"
 
@@ -23,6 +23,8 @@ namespace {
 constexpr std::size_t kMostHostBytes = 64 << 20;   // of a message of the other host
 constexpr std::size_t kMostEventBytes = 64 << 20;  // of its events that wait here
 constexpr std::chrono::milliseconds kMostTime{5};  // for what it sends, at a time: the rest waits
+constexpr std::chrono::seconds kQuiet{1};          // without a message, after which it is not waited for
+constexpr std::uint64_t kNoRequest = ~std::uint64_t{0};
 constexpr const char* kAsked = "another host is asked about it just now";
 constexpr const char* kPasses = "it passes an event of another host just now";
 }  // namespace
@@ -39,8 +41,20 @@ void RemoteMount::describe(Description<RemoteMount>& d) {
       .unit("s")
       .range(0.001, 3600)
       .doc("How long an answer may take; then the link counts as lost.");
+  d.property("patience", &M::patience_)
+      .unit("s")
+      .range(0, 3600)
+      .doc("How long reading a property may take where its last value is known, or where the other host was quiet.");
+  d.property("age", &M::age)
+      .unit("s")
+      .ofProcess()
+      .doc(
+          "Simulated time since the last values came: in each cycle of the other host, also where nothing has "
+          "changed.");
   d.property("connected", &M::connected).ofProcess().doc("Whether there is a link.");
   d.property("lostBecause", &M::lostBecause).ofProcess().doc("Why there is none.");
+  d.link(&M::simulation_, At<ISimulation>());
+  d.link(&M::server_, At<RemoteServer>());
   d.method("connect", &M::connect).parameters({"token"}).doc("Connects, and makes the nodes.");
   d.method("close", &M::close).doc("Disconnects.");
 }
@@ -75,9 +89,12 @@ void RemoteMount::connect(const Secret& token) {
   events_.clear();
   eventBytes_ = 0;
   listeners_.clear();
+  sources_.clear();
+  handled_ = 0;
+  quiet_ = false;
   wire_ = open();
   wire_->setLimit(kMostHostBytes);
-  wire_->send({kHello, kProtocol, token.text, clientName_, of_});
+  wire_->send({kHello, kProtocol, token.text, clientName_, of_, ancestor<SceneNode>() != nullptr});
   lostBecause_.clear();
   saidReady_ = false;
   awaitReply(0);
@@ -103,28 +120,65 @@ std::string RemoteMount::pathOf(const Leaf& node) const {
 }
 
 Value RemoteMount::ask(std::string_view request, const Leaf& node, List arguments) {
-  Value answer = askAbout(request, node, std::move(arguments));
+  List reply = askAbout(request, node, std::move(arguments));
   if (request == kCall) mirror_.catchUp();  // a method may remove its own node, as it may in this host
-  return answer;
+  return reply.size() > 2 ? std::move(reply[2]) : Value();
 }
 
-Value RemoteMount::askAbout(std::string_view request, const Leaf& node, List arguments) {
+/// In a cycle the last value counts, which came before it. Otherwise the other host is asked; where it does not answer
+/// soon, the last value counts as well.
+Value RemoteMount::read(const Leaf& node, const std::string& property) {
+  std::optional<Value> last;
+  if (const Value* const known = mirror_.value(node, property)) last = *known;
+  if (last && (!wire_ || (server_ && server_->inCycle()) || isQuiet())) return *last;
+  const auto silence = [&] {
+    return Error(fmt::format("{}: the host at {} has been quiet for {:.1f} s, and the value was never read before",
+                             node.path(), address_, std::chrono::duration<double>(Clock::now() - came_).count()));
+  };
+  const bool quiet = isQuiet();
+  if (wire_ && !last && quiet_) throw silence();
+  const List reply = askAbout(kGet, node, {property, true},
+                              last || quiet ? std::optional(std::min(patience_, timeout_)) : std::nullopt);
+  if (reply.empty()) {
+    if (last) return *last;
+    throw silence();
+  }
+  if (reply.size() > 3 && reply[3].isBool() && reply[3].toBool()) mirror_.keep(node, property, reply[2]);
+  return reply.size() > 2 ? reply[2] : Value();
+}
+
+/// True if the other host owes an answer, or has sent nothing for long.
+bool RemoteMount::isQuiet() {
+  if (!wire_ || !(quiet_ || Clock::now() - came_ > kQuiet)) return false;
+  if (server_ && server_->inCycle()) return true;
+  List none;
+  try {
+    wire_->receive();
+    while (receiveOne(none, kNoRequest)) {
+    }
+  } catch (const std::exception& e) {
+    lose(e.what());
+  }
+  return quiet_ || Clock::now() - came_ > kQuiet;
+}
+
+/// The answer to a request. Empty if none has come within `patience` [s]; without it the link is lost then.
+List RemoteMount::askAbout(std::string_view request, const Leaf& node, List arguments, std::optional<double> patience) {
   const InUse asked(node, kAsked);
   const std::uint64_t number = ++lastRequest_;
   List message{request, number, pathOf(node)};
   std::move(arguments.begin(), arguments.end(), std::back_inserter(message));
   if (!wire_) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
   wire_->send(message);
-  const List reply = awaitReply(number);
-  if (reply[0].toString() == kError)
+  List reply = awaitReply(number, patience);
+  if (!reply.empty() && reply[0].toString() == kError)
     throw Error(reply.size() > 2 ? reply[2].plain() : "the other host gives no reason");
-  return reply.size() > 2 ? reply[2] : Value();
+  return reply;
 }
 
 /// Waits for the answer to a request, or to `hello` (0). Changes of the tree are followed meanwhile; events wait.
-List RemoteMount::awaitReply(std::uint64_t number) {
-  using Clock = std::chrono::steady_clock;
-  const auto end = Clock::now() + std::chrono::duration<double>(timeout_);
+List RemoteMount::awaitReply(std::uint64_t number, std::optional<double> patience) {
+  const auto end = Clock::now() + std::chrono::duration<double>(patience.value_or(timeout_));
   List reply;
   try {
     for (;;) {
@@ -134,8 +188,10 @@ List RemoteMount::awaitReply(std::uint64_t number) {
         if (!reply.empty()) return reply;
       if (!alive) throw Error("the connection ended");
       const std::chrono::duration<double> left = end - Clock::now();
-      if (left.count() <= 0 || !wire_->waitFor(left.count()))
-        throw Error(fmt::format("it did not answer for {} s", timeout_));
+      if (left.count() > 0 && wire_->waitFor(left.count())) continue;
+      quiet_ = true;
+      if (patience) return {};
+      throw Error(fmt::format("it did not answer for {} s", timeout_));
     }
   } catch (const std::exception& e) {
     lose(e.what());
@@ -149,7 +205,10 @@ bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {
   if (!bytes) return false;
   List message = decode(*bytes);
   const std::string& kind = message[0].toString();
-  if (mirror_.follow(message, bytes->size())) return true;
+  quiet_ = false;
+  came_ = Clock::now();
+  cameAt_ = simulation_ ? simulation_->time() : 0;
+  if (mirror_.follow(message, bytes->size())) return acknowledge(), true;
   if (kind == kRefused) throw Error(message.size() > 1 ? message[1].plain() : "it refuses");
   if (kind == kEvent) {
     if (events_.empty()) eventBytes_ = 0;
@@ -164,6 +223,21 @@ bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {
     throw Error(fmt::format("it sent a '{}' that is not understood", kind));
   }
   return true;
+}
+
+/// Says which values have come: others may follow.
+void RemoteMount::acknowledge() {
+  if (!wire_ || mirror_.applied() == handled_) return;
+  handled_ = mirror_.applied();
+  wire_->send({kHandled, handled_});
+}
+
+double RemoteMount::age() const { return simulation_ ? std::max(0.0, simulation_->time() - cameAt_) : 0; }
+
+IEventSource* RemoteMount::eventsOf(Leaf& node) {
+  std::unique_ptr<Source>& source = sources_[node.id()];
+  if (!source) source = std::make_unique<Source>(*this, node);
+  return source.get();
 }
 
 void RemoteMount::listen(Leaf& node, const std::string& channel) {
@@ -191,6 +265,7 @@ void RemoteMount::poll() {
     try {
       if (!wire_->flush()) throw Error("the connection is broken");
       mirror_.catchUp();
+      acknowledge();
       const bool alive = wire_->receive();
       if (handleWhatCame() && !alive) throw Error("the connection ended");
     } catch (const std::exception& e) {
@@ -210,7 +285,6 @@ void RemoteMount::poll() {
 /// Follows changes of the tree and passes events, in the order in which they came, but not for long: a host that sends
 /// without end must not keep this one from its cycles. True if nothing is left.
 bool RemoteMount::handleWhatCame() {
-  using Clock = std::chrono::steady_clock;
   List none;
   const auto end = Clock::now() + kMostTime;
   while (wire_ && Clock::now() < end) {
@@ -218,7 +292,7 @@ bool RemoteMount::handleWhatCame() {
       const List event = std::move(events_.front());
       events_.pop_front();
       pass(event);
-    } else if (!receiveOne(none, ~std::uint64_t{0})) {
+    } else if (!receiveOne(none, kNoRequest)) {
       return true;
     }
   }

@@ -4,6 +4,6 @@
 
 namespace spark {
 
-TableValue RemoteNode::values() const { return {link().ask(remote::kRead, *this, {})}; }
+TableValue RemoteNode::values() const { return {linkOf(*this).ask(remote::kRead, *this, {})}; }
 
 }  // namespace spark

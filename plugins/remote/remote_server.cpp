@@ -36,6 +36,8 @@ void RemoteServer::describe(Description<RemoteServer>& d) {
   d.link(&R::tape_, At<IInputTape>()).doc("Records what remote hosts change, or plays it.");
   d.link(&R::simulation_, At<ISimulation>()).doc("In lockstep it waits longer for remote handlers.");
   d.link(&R::mounts_, At<Node>("/").below<IRemoteLink>());
+  d.on<&R::beginCycle>(phase::kAct);
+  d.on<&R::endCycle>(phase::kPublish);
   d.property("address", &R::address_).readOnly().ofProcess().doc("Where it listens; empty if it does not.");
   d.property("clients", &R::clients).ofProcess().doc("Number of hosts that are connected.");
   d.property("expect", &R::expect_)
@@ -160,6 +162,7 @@ void RemoteServer::setPatience() {
 }
 
 void RemoteServer::poll() {
+  inCycle_ = false;
   setPatience();
   acceptFrom(tcp_);
   acceptFrom(local_);

@@ -46,6 +46,8 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   bool canWait() const override { return !mounts_.empty(); }
 
   bool ready(bool lockstep) override;
+  /// True in a cycle, from its beginning to its last phase: what a mount has then is what it has for this cycle.
+  bool inCycle() const { return inCycle_; }
 
   // What a recording that is played passes on.
   void connected(IConnection& connection) override;
@@ -65,6 +67,8 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   void listenAt(const boost::asio::ip::tcp::endpoint& endpoint);
   void listenAt(const std::string& path);
   void dismiss();
+  void beginCycle(const Event&) { inCycle_ = true; }
+  void endCycle(const Event&) { inCycle_ = false; }
   void setPatience();
   remote::Session* sessionOf(std::uint64_t key);
   std::int64_t clients() const { return static_cast<std::int64_t>(sessions_.size()); }
@@ -76,10 +80,11 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   std::string address_, token_;
   double patience_ = 0.005, lockstepPatience_ = 10;
   Link<IInputTape> tape_;
-  remote::Host host_{*this, tape_, {}};  ///< its patience as the run loop runs now
+  remote::Host host_{*this, tape_, simulation_, {}};  ///< its patience as the run loop runs now
   std::vector<std::unique_ptr<remote::Session>> sessions_;
   std::uint64_t lastKey_ = 0;
   int expect_ = 0;
+  bool inCycle_ = false;
   bool released_ = false;        ///< those that were expected have come
   std::int64_t lateEvents_ = 0;  ///< of those that have gone
   Channel* lost_ = nullptr;

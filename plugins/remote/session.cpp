@@ -30,6 +30,11 @@ constexpr double kHelloTime = 5;                   // within which a client has 
 constexpr const char* kAnswers = "it answers a remote host just now";
 constexpr const char* kWait = "remote";  // the decision on the tape that ends a wait
 
+/// True for a request of a property that the client also wants to get when it changes.
+bool follows(const List& message) {
+  return message[0].toString() == kGet && message.size() > 4 && at(message, 4, Value::Type::boolean).toBool();
+}
+
 /// True for messages after which the simulation may go another way.
 bool isInput(std::string_view kind) { return kind == kSet || kind == kCall || kind == kListen || kind == kDone; }
 }  // namespace
@@ -51,6 +56,14 @@ void Session::send(const List& message) {
   if (wire_ && !isLost()) wire_->send(message);
 }
 
+/// Sends what has changed below the root: its shape, its scene nodes, and what the host reads. `now`: something follows
+/// that depends on it.
+void Session::feed(bool now) {
+  if (!wire_ || !root_ || isLost()) return;
+  tree_.update(*root_, scene_, *wire_);
+  scene_.update(*root_, now, host_.simulation.get(), *wire_);
+}
+
 void Session::lose(std::string why) {
   if (isLost()) return;
   why_ = std::move(why);
@@ -64,7 +77,7 @@ void Session::poll(std::string_view token) {
   if (!wire_ || isLost()) return;
   receive(token);
   if (isLost()) return;
-  if (open_ && root_) feed_.update(*root_, *wire_);
+  if (open_) feed(false);
   if (open_ && !root_) return lose("the part of the tree that it had mounted is gone");
   if (!wire_->flush()) return lose("the connection is broken");
   if (wire_->unsent() > kMostUnsent) return lose("it does not read what it gets");
@@ -104,6 +117,7 @@ void Session::handle(std::string_view bytes, std::string_view token) {
     ready_ = true;
     return;
   }
+  if (kind == kHandled) return scene_.handled(numberAt(message, 1));
   if (kind == kDone) {
     done_ = numberAt(message, 1);
     reply_ = message.size() > 2 ? message[2] : Value();
@@ -135,7 +149,8 @@ void Session::hello(const List& message, std::string_view token) {
   send({kWelcome, kProtocol});
   if (wire_) {
     wire_->setLimit(kMostClientBytes);
-    feed_.update(*root_, *wire_);
+    if (message.size() > 5 && at(message, 5, Value::Type::boolean).toBool()) scene_.wantScene();
+    feed(true);
   }
 }
 
@@ -147,12 +162,14 @@ void Session::answer(const List& message) {
   List reply;
   try {
     reply = {kOk, number, perform(message)};
+    if (follows(message))
+      reply.emplace_back(scene_.follow(leafAt(at(message, 2, Value::Type::string)), textAt(message, 3), reply[2]));
   } catch (const std::exception& e) {
     reply = {kError, number, e.what()};
   }
   handling_ = outer;
   // The answer comes behind the changes that it made, so that it can be followed by a look at them.
-  if (wire_ && root_) feed_.update(*root_, *wire_);
+  feed(true);
   send(reply);
 }
 
@@ -174,6 +191,7 @@ Value Session::perform(const List& message) {
     for (const Property* p : leaf.classObject()->properties()) all.emplace_back(List{p->name, p->get(leaf)});
     return all;
   }
+  scene_.touch(leaf);
   if (kind == kSet) {
     if (message.size() < 5) throw Error("expected a value");
     setProperty(leaf, textAt(message, 3), message[4]);
@@ -202,7 +220,7 @@ void Session::pass(std::uint64_t number, bool waits, const Event& event) {
   // In the middle of its own request it could not answer, and one that still owes an answer is not waited for.
   const std::uint64_t asked = waits && !handling_ && asked_ == done_ ? ++asked_ : 0;
   if (wire_) {
-    if (root_) feed_.update(*root_, *wire_);
+    feed(asked != 0);
     send({kEvent, asked, number, event.time, event.step, event.cycle, event.data ? *event.data : Value(),
           event.answer != nullptr});
     if (!wire_->flush()) return lose("the connection is broken");

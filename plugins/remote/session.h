@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "api/inputs.h"
+#include "scene_feed.h"
 #include "spark/event.h"
 #include "spark/kernel.h"
 #include "spark/link.h"
@@ -28,6 +29,7 @@ struct Patience {
 struct Host {
   Node& server;
   const Link<IInputTape>& tape;  ///< records what remote hosts change, or plays it
+  const Link<ISimulation>& simulation;
   Patience patience;
 };
 
@@ -80,6 +82,7 @@ class Session {
   void await(std::uint64_t event);
   void note(Input::Kind kind, std::string_view text);
   void send(const List& message);
+  void feed(bool now);
   Leaf& leafAt(const Value& path) const;
 
   const Host& host_;
@@ -87,7 +90,8 @@ class Session {
   std::unique_ptr<Wire> wire_;
   std::string peer_, name_, why_;
   Ref<Node> root_;
-  TreeFeed feed_;
+  TreeFeed tree_;
+  SceneFeed scene_;
   std::map<std::uint64_t, Listener> listeners_;  ///< by the remote host's number
   std::uint64_t asked_ = 0, done_ = 0;           ///< numbers of the last event that is awaited, and that was answered
   Value reply_;                                  ///< what its handlers answered

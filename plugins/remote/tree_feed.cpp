@@ -1,6 +1,7 @@
 #include "tree_feed.h"
 
 #include "messages.h"
+#include "scene_feed.h"
 #include "spark/plugin_object.h"
 #include "wire.h"
 
@@ -20,14 +21,22 @@ List describe(const Method& m) {
   List parameters(m.parameters.begin(), m.parameters.end());
   return {m.name, m.doc, std::move(parameters), m.returns, m.minScalars, m.maxScalars, m.surplusIgnored};
 }
+
+/// The names of all bases, the nearest first, if nodes of the class can be scene nodes of another host.
+List basesOf(ClassObject& c) {
+  List bases;
+  if (isOfScene(c))
+    for (ClassObject* base = c.base(); base; base = base->base()) bases.emplace_back(base->name());
+  return bases;
+}
 }  // namespace
 
-void TreeFeed::update(Node& root, Wire& out) {
+void TreeFeed::update(Node& root, SceneFeed& scene, Wire& out) {
   if (root_ == root.id() && version_ == root.changedAt()) return;
   root_ = root.id();
   version_ = root.changedAt();
   ++round_;
-  visit(root, out);
+  visit(root, scene, out);
   // Parents have smaller ids than their children unless they were moved; removing a node twice does no harm.
   for (auto at = known_.begin(); at != known_.end();) {
     if (at->second.round == round_) {
@@ -39,21 +48,21 @@ void TreeFeed::update(Node& root, Wire& out) {
   }
 }
 
-void TreeFeed::visit(Node& node, Wire& out) {
+void TreeFeed::visit(Node& node, SceneFeed& scene, Wire& out) {
   for (const auto& child : node.children()) {
     if (isOfProgram(*child)) continue;
-    tell(*child, out);
-    if (Node* const inner = child->asNode()) visit(*inner, out);
+    tell(*child, scene, out);
+    if (Node* const inner = child->asNode()) visit(*inner, scene, out);
   }
 }
 
-void TreeFeed::tell(Leaf& leaf, Wire& out) {
+void TreeFeed::tell(Leaf& leaf, SceneFeed& scene, Wire& out) {
   const std::uint64_t parent = leaf.parent()->id() == root_ ? 0 : leaf.parent()->id();
   const auto [at, isNew] = known_.try_emplace(leaf.id());
   Known& known = at->second;
   if (isNew) {
     tellClass(*leaf.classObject(), out);
-    out.send({kAdd, leaf.id(), parent, leaf.name(), leaf.classObject()->name()});
+    out.send({kAdd, leaf.id(), parent, leaf.name(), leaf.classObject()->name(), scene.describe(leaf)});
   } else {
     if (known.parent != parent) out.send({kMove, leaf.id(), parent});
     if (known.name != leaf.name()) out.send({kRename, leaf.id(), leaf.name()});
@@ -72,7 +81,7 @@ void TreeFeed::tellClass(ClassObject& c, Wire& out) {
   for (const Method* m : c.methods()) methods.emplace_back(describe(*m));
   const Plugin* const plugin = c.plugin();
   out.send({kClass, c.name(), c.doc(), c.baseName(), plugin ? plugin->name() : "", plugin ? plugin->version() : "",
-            std::move(properties), std::move(methods)});
+            std::move(properties), std::move(methods), basesOf(c)});
 }
 
 }  // namespace spark::remote

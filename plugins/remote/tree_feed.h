@@ -11,6 +11,7 @@
 
 namespace spark::remote {
 
+class SceneFeed;
 class Wire;
 
 /// The subtree as one client knows it. Of the whole tree, /classes, /plugins and /sys/host are left out: what the
@@ -18,15 +19,16 @@ class Wire;
 class TreeFeed {
  public:
   /// Sends the changes below `root` since the last call; all of it at first. Costs one comparison if there are none.
-  void update(Node& root, Wire& out);
+  /// `scene` says what new scene nodes are.
+  void update(Node& root, SceneFeed& scene, Wire& out);
 
  private:
   struct Known {
     std::uint64_t parent = 0, round = 0;
     std::string name;
   };
-  void visit(Node& node, Wire& out);
-  void tell(Leaf& leaf, Wire& out);
+  void visit(Node& node, SceneFeed& scene, Wire& out);
+  void tell(Leaf& leaf, SceneFeed& scene, Wire& out);
   void tellClass(ClassObject& c, Wire& out);
 
   std::map<std::uint64_t, Known> known_;          ///< by Leaf::id

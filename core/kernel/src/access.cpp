@@ -52,17 +52,6 @@ std::vector<Value> readTyped(const Method& m, std::span<const Value> arguments) 
     out.push_back(arguments[i].readAs(each ? typeOf(m.parameters[i]) : type));
   return out;
 }
-}  // namespace
-
-void writeProperty(const Property& p, Leaf& leaf, Args& args) {
-  for (const Value& v : args.values) {
-    checkRange(p, v, args.loose);
-    checkChoices(p, v);
-  }
-  p.set(leaf, args);
-}
-
-namespace {
 ClassObject& classFor(const Leaf& leaf) {
   if (!leaf.classObject()) throw Error(fmt::format("{} has no class", leaf.path()));
   return *leaf.classObject();
@@ -119,6 +108,14 @@ std::string readAsNumbers(const Method& m, std::span<const Value> arguments) {
   return out;
 }
 }  // namespace
+
+void writeProperty(const Property& p, Leaf& leaf, Args& args) {
+  for (const Value& v : args.values) {
+    checkRange(p, v, args.loose);
+    checkChoices(p, v);
+  }
+  p.set(leaf, args);
+}
 
 Value getProperty(const Leaf& leaf, std::string_view name) { return findProperty(leaf, name).get(leaf); }
 

@@ -9,6 +9,7 @@
 
 #include "spark/error.h"
 #include "spark/kernel.h"
+#include "spark/make_as_base.h"
 #include "spark/running.h"
 #include "tree.h"
 
@@ -28,7 +29,22 @@ std::string classAndPlugin(const ClassObject& c) {
   return c.plugin() ? fmt::format("class {} of plugin {}", c.name(), c.plugin()->name())
                     : fmt::format("class {}", c.name());
 }
+
+/// What a class inherits, and its own, which overrides entries of the same name.
+template <class T>
+std::vector<const T*> overridden(std::vector<const T*> all, const std::vector<T>& own) {
+  for (const T& entry : own) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](const T* other) { return other->name == entry.name; });
+    if (same == all.end())
+      all.push_back(&entry);
+    else
+      *same = &entry;
+  }
+  return all;
+}
 }  // namespace
+
+std::unique_ptr<Leaf> makeAsBase() { return nullptr; }
 
 ClassObject::ClassObject(Kernel& kernel, ClassDescription description, Plugin* plugin)
     : kernel_(kernel), description_(std::move(description)), plugin_(plugin) {
@@ -122,8 +138,10 @@ void ClassObject::resolve() {
 /// Runs the constructor.
 std::unique_ptr<Leaf> ClassObject::construct() const {
   const NowRunning now("the constructor", this);
+  const ClassObject* maker = this;
+  while (maker->description_.make == makeAsBase) maker = maker->base_;
   try {
-    return description_.make();
+    return maker->description_.make();
   } catch (const std::exception& e) {
     throw Error(fmt::format("the constructor of {} failed", classAndPlugin(*this)), e);
   } catch (...) {
@@ -220,29 +238,11 @@ const Property* ClassObject::propertySetBy(std::string_view methodName) {
 }
 
 std::vector<const Property*> ClassObject::properties() {
-  std::vector<const Property*> out;
-  if (ClassObject* b = base()) out = b->properties();
-  for (const Property& p : description_.properties) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const Property* q) { return q->name == p.name; });
-    if (same == out.end())
-      out.push_back(&p);
-    else
-      *same = &p;
-  }
-  return out;
+  return overridden(base() ? base()->properties() : std::vector<const Property*>(), description_.properties);
 }
 
 std::vector<const Method*> ClassObject::methods() {
-  std::vector<const Method*> out;
-  if (ClassObject* b = base()) out = b->methods();
-  for (const Method& m : description_.methods) {
-    const auto same = std::find_if(out.begin(), out.end(), [&](const Method* q) { return q->name == m.name; });
-    if (same == out.end())
-      out.push_back(&m);
-    else
-      *same = &m;
-  }
-  return out;
+  return overridden(base() ? base()->methods() : std::vector<const Method*>(), description_.methods);
 }
 
 const std::vector<const Hook*>& ClassObject::hooks() {
@@ -260,10 +260,6 @@ const std::vector<const Property*>& ClassObject::stateProperties() {
   return stateProperties_;
 }
 
-Value ClassObject::defaultOf(const Property& property) {
-  if (isAbstract()) return {};
-  const auto fresh = create();
-  return property.get(*fresh);
-}
+Value ClassObject::defaultOf(const Property& property) { return isAbstract() ? Value() : property.get(*create()); }
 
 }  // namespace spark

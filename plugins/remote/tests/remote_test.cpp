@@ -13,6 +13,7 @@
 #include "../messages.h"
 #include "../wire.h"
 #include "api/phases.h"
+#include "api/scene.h"
 #include "spark/access.h"
 #include "spark/error.h"
 #include "temporary_folder.h"
@@ -241,6 +242,103 @@ TEST_CASE("When the other host ends, its nodes stay and say why they cannot be u
   CHECK(lost == 1);
   CHECK(count(b.host.text, "is lost") == 1);
   CHECK(getProperty(*b.mount, "connected") == Value(false));
+}
+
+namespace {
+/// A scene with a box at (1, 2, 3), served; and one that mounts it below a transform at (10, 0, 0).
+struct Scenes {
+  Served a{"127.0.0.1:0"};
+  Transform* box = nullptr;
+  Mounting b;
+  Node* mount = nullptr;
+
+  Scenes() : box(made(a.host.kernel)), b(started()) {
+    Kernel& kernel = b.host.kernel;
+    kernel.plugins().use("scene");
+    kernel.create("SceneServer", "/sys/server/scene");
+    kernel.create("Scene", "/usr/scene");
+    kernel.create<Transform>("Transform", "/usr/scene/room").setLocalPos({10, 0, 0});
+    mount = kernel.create("RemoteMount", "/usr/scene/room/there").asNode();
+    setProperty(*mount, "address", a.address());
+    setProperty(*mount, "of", "/usr/scene");
+  }
+  static Transform* made(Kernel& kernel) {
+    kernel.plugins().use("scene");
+    kernel.create("SceneServer", "/sys/server/scene");
+    kernel.create("Scene", "/usr/scene");
+    auto& box = kernel.create<Transform>("Transform", "/usr/scene/box");
+    box.setLocalPos({1, 2, 3});
+    callMethod(box.create("Box", "look"), "setExtents", List{0.1, 0.2, 0.3});
+    return &box;
+  }
+  std::string started() {
+    const std::string address = a.address();
+    a.run();
+    return address;
+  }
+  void connect() { callMethod(*mount, "connect", List{kToken}); }
+};
+}  // namespace
+
+TEST_CASE("Scene nodes of another host are scene nodes below the mount") {
+  Scenes s;
+  s.connect();
+  auto& box = s.mount->require<Transform>("box");
+  s.b.host.kernel.root().require<ISceneServer>().place();
+  CHECK(positionOf(box.world()) == Vec3f(11, 2, 3));
+  auto& look = s.mount->require<IVisual>("box/look");
+  CHECK(look.load() == "StdUnitBox");
+  CHECK(look.scale() == Vec3f(0.1f, 0.2f, 0.3f));
+  CHECK(look.leaf().classObject()->isA("Box"));
+  CHECK(look.leaf().classObject()->name() == "Box@there");
+
+  // What is set is set there, and is here before the answer.
+  setProperty(box, "localPos", List{4, 5, 6});
+  CHECK(box.localPos() == Vec3f(4, 5, 6));
+  callMethod(look.leaf(), "setExtents", List{1, 1, 1});
+  CHECK(look.scale() == Vec3f(1, 1, 1));
+  CHECK(getProperty(box, "localPos") == Value(List{4.0, 5.0, 6.0}));
+  // In this host's own scene it follows what is above.
+  s.b.host.kernel.root().require<Transform>("/usr/scene/room").setLocalPos({20, 0, 0});
+  s.b.host.kernel.root().require<ISceneServer>().place();
+  CHECK(positionOf(box.world()) == Vec3f(24, 5, 6));
+}
+
+TEST_CASE("Handlers on a scene node of another host run with its events and with its values of that moment") {
+  Scenes s;
+  std::int64_t moves = 0;
+  s.connect();
+  auto& box = s.mount->require<Transform>("box");
+  std::vector<std::pair<std::int64_t, float>> seen;
+  s.b.host.kernel.events().channel("rule").add(box, [&](Leaf& node, const Event& event) {
+    seen.emplace_back(event.cycle, node.as<Transform>()->localPos().x());
+    setProperty(node, "localPos", List{static_cast<double>(++moves), 0, 0});
+  });
+  s.b.serve([&] { return seen.size() >= 5; });
+  for (std::size_t i = 1; i < seen.size(); ++i) CHECK(seen[i].second == static_cast<float>(i));
+}
+
+TEST_CASE("Outside of a scene nodes of another host are none of a scene") {
+  Scenes s;
+  s.b.connect();
+  Leaf& box = s.b.mount->require<Leaf>("usr/scene/box");
+  CHECK_FALSE(box.as<Transform>());
+  CHECK(box.classObject()->isA("RemoteNode"));
+  CHECK(getProperty(box, "localPos") == Value(List{1.0, 2.0, 3.0}));
+}
+
+TEST_CASE("When the other host ends, its scene nodes stay where they were, and values that were read stay") {
+  auto s = std::make_unique<Scenes>();
+  s->connect();
+  auto& box = s->mount->require<Transform>("box");
+  Leaf& scene = s->mount->require<Leaf>("box/look");
+  const Value shadows = getProperty(scene, "castShadows");
+  s->a.stop();
+  callMethod(*s->mount, "close", {});
+  CHECK(box.localPos() == Vec3f(1, 2, 3));
+  CHECK(getProperty(box, "localPos") == Value(List{1.0, 2.0, 3.0}));
+  CHECK(getProperty(scene, "castShadows") == shadows);
+  CHECK_THROWS_WITH(setProperty(box, "localPos", List{0, 0, 0}), Contains("is lost"));
 }
 
 TEST_CASE("In real time the simulation does not wait for a remote host that hangs") {
