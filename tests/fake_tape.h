@@ -13,7 +13,7 @@
 
 namespace spark::test {
 
-/// Notes requests and commands. `plays`: it is a tape that is played, on which nothing else may be put.
+/// Notes requests, commands and messages. `plays`: it is a tape that is played, on which nothing else may be put.
 class FakeTape : public Node, public IInputTape {
   SPARK_CLASS(FakeTape, Node)
  public:
@@ -28,6 +28,7 @@ class FakeTape : public Node, public IInputTape {
   }
   bool playing() const override { return plays; }
   bool put(const Input& input) override {
+    if (input.kind == Input::Kind::message) messages.emplace_back(input.text);
     if (input.kind != Input::Kind::request && input.kind != Input::Kind::command) return true;
     if (plays) return false;
     noted.push_back(fmt::format("{}: {}", input.place, input.text));
@@ -37,7 +38,8 @@ class FakeTape : public Node, public IInputTape {
   bool decide(std::string_view, std::uint64_t, bool live, bool) override { return live; }
 
   bool plays = false;
-  std::vector<std::string> noted;  ///< "place: text" each
+  std::vector<std::string> noted;     ///< requests and commands: "place: text" each
+  std::vector<std::string> messages;  ///< of clients
 };
 
 }  // namespace spark::test

@@ -142,6 +142,34 @@ TEST_CASE("an angular motor drives its axes") {
       {&engine::Capabilities::joints, &engine::Capabilities::loops});
 }
 
+TEST_CASE("a slider that closes a loop has the direction of one that does not, with either order, motor and stops") {
+  for (const bool worldFirst : {false, true})
+    for (const bool closes : {false, true})
+      withEngines(
+          [&](EngineWorld& w) {
+            CAPTURE(worldFirst, closes);
+            w.setGravity(0);
+            const BodyHandle b = w.body({0, 0, 0});
+            if (closes) w.joint(JointType::slider, b, BodyHandle::none, {0, 0, 0}, Vec3::UnitX());
+            const BodyHandle none = BodyHandle::none;
+            const JointHandle j =
+                w.joint(JointType::slider, worldFirst ? none : b, worldFirst ? b : none, {0, 0, 0}, Vec3::UnitX());
+            w.motor(j, 0, 0.5, 50);
+            w.run(1);
+            // A slider moves its first body along the axis, seen from the second.
+            const double direction = worldFirst ? -1 : 1;
+            CHECK(w.position(b).x() == Approx(0.5 * direction).margin(0.02));
+            w.stops(j, 0, -0.1, 0.7);
+            w.run(1);
+            CHECK(w.position(b).x() == Approx(0.7 * direction).margin(0.02));
+            w.motor(j, 0, -0.5, 50);
+            w.run(2.5);
+            CHECK(w.position(b).x() == Approx(-0.1 * direction).margin(0.02));
+            CHECK(std::abs(w.position(b).y()) < 1e-3);
+          },
+          {&engine::Capabilities::joints, &engine::Capabilities::loops});
+}
+
 TEST_CASE("a hanging closed loop of bodies holds together") {
   withEngines(
       [](EngineWorld& w) {

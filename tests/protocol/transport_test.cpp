@@ -177,6 +177,24 @@ TEST_CASE("A client that sends part of a message and then nothing is closed afte
   REQUIRE(w.logged("it began a message and did not finish it within 0.01 s"));
 }
 
+TEST_CASE("A client that sends its message in drips is closed after messageTimeout, counted from the first byte") {
+  Wire w;
+  setProperty(w.port(), "messageTimeout", 0.05);
+  Client c = w.client();
+  const std::string message = framed(std::string(60000, 'x'));
+  const auto start = std::chrono::steady_clock::now();
+  // Drips come much faster than the limit, and the message would take a minute.
+  for (std::size_t at = 0; at < message.size() && !w.logged("did not finish it within 0.05 s"); ++at) {
+    c.raw(std::string_view(message).substr(at, 1));
+    w.net->poll();
+    const auto next = start + std::chrono::milliseconds(at + 1);
+    while (std::chrono::steady_clock::now() < next) w.net->poll();
+  }
+  CHECK(w.consumer->events.size() <= 2);
+  REQUIRE(w.logged("it began a message and did not finish it within 0.05 s"));
+  REQUIRE(c.closed());
+}
+
 TEST_CASE("When its consumer is removed a port closes its clients with one log line, and serves the next consumer") {
   Wire w;
   Client silent = w.client(), speaker = w.client();

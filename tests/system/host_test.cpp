@@ -368,6 +368,22 @@ TEST_CASE("sparkctl --wait waits for a simulation that starts later") {
   CHECK(host.wait() == 0);
 }
 
+TEST_CASE("sparkctl --pid means that process alone, not one whose number ends or begins with the same digits") {
+  TemporaryFolder folder;
+  Process p(host({"--config", folder.write("small.lua", kSmall)}));
+  p.line();
+  const std::string pid = std::to_string(p.pid());
+  const auto step = [](const std::string& which) {
+    return runToEnd({program("sparkctl"), "--pid", which, "get", "/sys/server/simulation.step"});
+  };
+  CHECK(step(pid).code == 0);
+  for (const std::string& other : {pid.substr(1), pid.substr(0, pid.size() - 1)}) {
+    if (other.empty() || std::stoi(other) == 0) continue;
+    CAPTURE(pid, other);
+    CHECK_THAT(step(other).errors, Contains("has no simulation"));
+  }
+}
+
 TEST_CASE("sparkctl reports that there is no instance to connect to") {
   TemporaryFolder folder;
   setenv("XDG_RUNTIME_DIR", folder.path().c_str(), 1);

@@ -73,6 +73,8 @@ TEST_CASE("A rule in another process judges a match as the same rule inside, to 
   CHECK(there["cycles"] == here["cycles"]);
   CHECK(count(elsewhere.referee.errors(), "shot clock: ") == count(inside.errors(), "shot clock: "));
 
+  // Command lines are in recordings as they are, secrets are not. (What is said at the port: remote's own tests.)
+  CHECK(textOf(file).find("shotClock=elsewhere") != std::string::npos);
   CHECK(textOf(file).find(kToken) == std::string::npos);
   // The recording holds what the referee did: the same match is simulated again without it.
   const Finished again = runToEnd({program("sparkreplay"), file, "--verify"});

@@ -32,6 +32,8 @@ class Linked : public Node {
     d.link(&Linked::named, At<Thing>(&Linked::path));
     d.link(&Linked::all, Below<Thing>());
     d.link(&Linked::children, Child<ICounter>());
+    d.link(&Linked::heavyBelow, Below<Thing>().where<isHeavy>("heavy Thing"));
+    d.link(&Linked::allHeavy, Below<Thing>().where<isHeavy>("heavy Thing"));
     d.property("path", &Linked::getPath, &Linked::setPath);
   }
   const std::string& getPath() const { return path; }
@@ -39,9 +41,9 @@ class Linked : public Node {
     path = std::move(to);
     named.lookAgain();
   }
-  Link<Thing> above, below, child, beside, heavy, at, named;
+  Link<Thing> above, below, child, beside, heavy, at, named, heavyBelow;
   Link<ICounter> counter;
-  Links<Thing> all;
+  Links<Thing> all, allHeavy;
   Links<ICounter> children;
   std::string path;
   const Thing* atUnlink = nullptr;
@@ -161,6 +163,21 @@ TEST_CASE("A list of links holds all targets in tree order") {
   CHECK(l.all.size() == 1);
 }
 
+TEST_CASE("A link with a condition passes over what does not fulfil it, also below and in lists") {
+  Forest t;
+  Linked& l = t.linked(t.make("outer"));
+  Thing& light = t.make(l, "light");
+  CHECK_FALSE(l.heavyBelow);
+  CHECK(l.allHeavy.empty());
+  Thing& one = t.make(light, "heavy");
+  Thing& other = t.make(t.make(l, "later"), "heavy");
+  CHECK(l.heavyBelow.get() == &one);
+  REQUIRE(l.allHeavy.size() == 2);
+  CHECK(l.allHeavy.all()[0].object == &one);
+  CHECK(l.allHeavy.all()[1].object == &other);
+  CHECK(l.all.size() == 4);
+}
+
 TEST_CASE("The ends of a list of links belong together, whichever is taken first after a change") {
   Forest t;
   Linked& l = t.linked(t.make("outer"));
@@ -192,7 +209,7 @@ TEST_CASE("A class inherits the links of its bases") {
   auto& l = static_cast<MoreLinked&>(outer.create("MoreLinked"));
   CHECK(l.above.get() == &outer);
   CHECK(l.root.get() == &t.kernel.root());
-  CHECK(l.classObject()->links().size() == 11);
+  CHECK(l.classObject()->links().size() == 13);
 }
 
 TEST_CASE("The error for a missing target says what was expected and where") {

@@ -260,7 +260,9 @@ TEST_CASE("Clients of other servers may get and watch, and need rights to set or
   };
   const Json set = {{"do", "set"}, {"path", "/sys/server/simulation"}, {"property", "step"}, {"value", 0.01}};
   const Json call = {{"do", "call"}, {"path", "/sys/server/simulation"}, {"method", "setStep"}, {"arguments", {0.03}}};
-  for (const Json& request : {set, call}) {
+  const Json load = {{"do", "load"}, {"name", "scene"}}, unload = {{"do", "unload"}, {"name", "simulation"}};
+  for (const Json& request : {set, call, load, unload}) {
+    CAPTURE(request.dump());
     const Json refused = ask(request, false);
     REQUIRE(refused["ok"] == false);
     REQUIRE(refused["error"].get<std::string>().find("only the referee may") != std::string::npos);

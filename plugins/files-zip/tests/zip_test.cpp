@@ -1,3 +1,5 @@
+#include <fcntl.h>
+#include <sys/stat.h>
 #include <zip.h>
 
 #include <catch2/catch.hpp>
@@ -77,6 +79,30 @@ TEST_CASE("a changed archive is read again, and a missing one has no members") {
   const auto before = a.server->stamp("x");
   a.write({{"x", "three"}, {"y", ""}});
   CHECK(a.server->read("x") == "three");
+  CHECK(a.server->stamp("x") != before);
+}
+
+TEST_CASE("an archive that is rewritten in the same second with the same size is read again") {
+  Archive a;
+  const auto writtenAt = [&](const char* text, long nanoseconds) {
+    // Over the same file, so that its inode stays too.
+    std::stringstream bytes;
+    {
+      Archive other;
+      other.write({{"x", text}});
+      bytes << std::ifstream(other.file, std::ios::binary).rdbuf();
+    }
+    std::ofstream(a.file, std::ios::binary) << bytes.str();
+    const timespec times[] = {{1000, nanoseconds}, {1000, nanoseconds}};
+    REQUIRE(utimensat(AT_FDCWD, a.file.c_str(), times, 0) == 0);
+    return fs::file_size(a.file);
+  };
+  const auto size = writtenAt("one", 1);
+  CHECK(a.server->read("x") == "one");
+  const auto before = a.server->stamp("x");
+  CHECK(a.server->stamp("x") == before);
+  REQUIRE(writtenAt("two", 2) == size);
+  CHECK(a.server->read("x") == "two");
   CHECK(a.server->stamp("x") != before);
 }
 

@@ -51,6 +51,24 @@ TEST_CASE("JSON mirrors the S-expressions") {
   REQUIRE(f.read(text) == same);
 }
 
+TEST_CASE("JSON numbers are exact at any size: clocks of days, and what is next to nothing") {
+  Fixture f;
+  const auto [text, number] = GENERATE(table<std::string, double>({{"65536.01", 65536.01},
+                                                                   {"140000.01", 140000.01},
+                                                                   {"16777217.00", 16777217.0},
+                                                                   {"999999999.99", 999999999.99},
+                                                                   {"-65537.03", -65537.03},
+                                                                   {"0.00", 0.0},
+                                                                   {"0.01", 0.01}}));
+  CAPTURE(text);
+  Predicates out;
+  out.open("now").add(number).close();
+  CHECK(f.written(out) == "[[\"now\"," + text + "]]");
+  Predicates in;
+  f.parser->parse("[\"now\"," + text + "]", in);
+  CHECK((*in.begin()).at(1).number() == number);
+}
+
 TEST_CASE("JSON numbers give number tokens") {
   Fixture f;
   Predicates p;

@@ -36,6 +36,24 @@ TEST_CASE("S-expressions are written in the format that existing clients expect"
   }
 }
 
+TEST_CASE("Numbers are exact at any size: clocks of days, and what is next to nothing") {
+  SexpFixture f;
+  const auto [text, number] = GENERATE(table<std::string, double>({{"65536.01", 65536.01},
+                                                                   {"140000.01", 140000.01},
+                                                                   {"16777217", 16777217.0},
+                                                                   {"999999999.99", 999999999.99},
+                                                                   {"-65537.03", -65537.03},
+                                                                   {"0.00", 0.0},
+                                                                   {"0.01", 0.01}}));
+  CAPTURE(text);
+  Predicates out;
+  out.open("time").open("now").add(number).close().close();
+  CHECK(f.written(out) == "(time (now " + (text == "16777217" ? text + ".00" : text) + "))");
+  Predicates in;
+  f.parser->parse("(time (now " + text + "))", in);
+  CHECK((*in.begin()).at(1).at(1).number() == number);
+}
+
 TEST_CASE("Not-a-number and infinity are spelled as in C") {
   SexpFixture f;
   Predicates p;

@@ -85,3 +85,31 @@ TEST_CASE("a restored scene continues bit for bit with any history") {
   a.step(200);
   CHECK(a.hash() == end);
 }
+
+TEST_CASE("a joint keeps its turns in the saved state, and goes on as its twin does") {
+  const auto turning = [](PhysicsHost& h) -> Leaf& {
+    Leaf& hinge = h.thing("wheel", {0, 0, 5}).create("HingeJoint", "hinge");
+    h.call(hinge, "attach", {"../body"});
+    h.call(hinge, "setMaxMotorForce", {0, 50.0});
+    h.call(hinge, "setAngularMotorVelocity", {0, 600.0});
+    return hinge;
+  };
+  const auto angle = [](Leaf& hinge) { return PhysicsHost::call(hinge, "getAngle").toNumber(); };
+  PhysicsHost a, b;
+  Leaf &one = turning(a), &other = turning(b);
+  a.step(100);
+  REQUIRE(std::abs(angle(one)) > 720);
+  StateWriter out(true);
+  saveTree(a.scene, out);
+  StateReader in(out.bytes());
+  loadTree(b.scene, in);
+  CHECK(angle(other) == angle(one));
+  // A stop at the sum of all turns holds where it holds the twin.
+  for (PhysicsHost* h : {&a, &b}) {
+    Leaf& hinge = h == &a ? one : other;
+    h->call(hinge, "setLowStopDeg", {0, -1500.0}), h->call(hinge, "setHighStopDeg", {0, 1500.0});
+    h->step(60);
+  }
+  CHECK(angle(other) == angle(one));
+  CHECK(std::abs(angle(one)) < 1510);
+}

@@ -14,6 +14,7 @@
 #include "../wire.h"
 #include "api/phases.h"
 #include "api/scene.h"
+#include "fake_tape.h"
 #include "spark/access.h"
 #include "spark/error.h"
 #include "temporary_folder.h"
@@ -436,6 +437,24 @@ TEST_CASE("Hosts without the token, and those that are none, lose their own conn
   CHECK(raw(framed(remote::encode({"hello", 1, "", "x", "/"}))));
   CHECK(raw(framed(remote::encode({"hello", 1, kToken, 5, "/"}))));
   CHECK(getProperty(good.mount->require<Leaf>("sys/server/simulation"), "step") == Value(0.02));
+}
+
+TEST_CASE("What a remote host says is put on the tape, but its token is not") {
+  Served a("127.0.0.1:0");
+  const test::FakeTape& tape = test::FakeTape::in(a.host.kernel);
+  a.run();
+  Mounting b(a.address());
+  b.connect();
+  setProperty(b.mount->require<Leaf>("sys/server/simulation"), "step", 0.01);
+  a.stop();
+  const auto with = [](const std::vector<std::string>& messages, const std::string& text) {
+    return std::count_if(messages.begin(), messages.end(),
+                         [&](const std::string& m) { return m.find(text) != std::string::npos; });
+  };
+  REQUIRE(with({remote::encode({remote::kHello, remote::kProtocol, kToken, "tester", "/"})}, kToken) == 1);
+  CHECK(with(tape.messages, "tester") == 1);  // the hello is there
+  CHECK(with(tape.messages, "step") >= 1);
+  CHECK(with(tape.messages, kToken) == 0);
 }
 
 TEST_CASE("Addresses and tokens that cannot be used are refused with a sentence") {

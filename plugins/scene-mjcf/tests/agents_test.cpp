@@ -167,11 +167,13 @@ TEST_CASE("the force of an actuator is limited before its gear, and its length i
   RobotHost h;
   h.import(R"(<mujoco model='m'><compiler angle='radian'/><worldbody>
     <body><joint name='a' ref='0.5'/><geom size='.1'/></body><body><joint name='b'/><geom size='.1'/></body>
-    <body><joint name='c'/><geom size='.1'/></body><body><joint name='d'/><geom size='.1'/></body></worldbody>
+    <body><joint name='c'/><geom size='.1'/></body><body><joint name='d'/><geom size='.1'/></body>
+    <body><joint name='e'/><geom size='.1'/></body></worldbody>
     <actuator><position name='pos' joint='a' kp='3' gear='2' forcerange='-7 7' ctrlrange='-1 1'/>
     <motor name='motor' joint='b' gear='2' ctrlrange='-9 9' forcerange='-1 4'/>
     <general name='affine' joint='c' gear='2' gainprm='3' biastype='affine' biasprm='1 -2 -3'/>
-    <damper name='damp' joint='d' gear='2' kv='5' ctrlrange='0 4'/></actuator></mujoco>)");
+    <damper name='damp' joint='d' gear='2' kv='5' ctrlrange='0 4'/>
+    <general name='against' joint='e' gainprm='-2' forcerange='-1 4'/></actuator></mujoco>)");
   const auto number = [&](const std::string& path, const char* name) {
     return getProperty(*h.find("m/" + path), name).toNumber();
   };
@@ -188,6 +190,8 @@ TEST_CASE("the force of an actuator is limited before its gear, and its length i
   CHECK(number("body3/c/affine", "damping") == 12);
   CHECK(number("body4/d/damp", "gainDamping") == 20);
   CHECK(number("body4/d/damp", "damping") == 0);
+  CHECK(number("body5/e/against", "least") == -2);  // a negative gain: the limits change places
+  CHECK(number("body5/e/against", "most") == 0.5);
 }
 
 TEST_CASE("the forces of several actuators of a joint add up") {

@@ -45,6 +45,23 @@ TEST_CASE("Where time goes on elsewhere, nothing is on its way, and what an agen
   REQUIRE(agent.at(10) == "S0 10 (third)");
 }
 
+TEST_CASE("Where time goes back, an act is due by its own thought, not by those of the time before") {
+  Talk agent;
+  agent.mind.sense(1000, "(late)");
+  REQUIRE(agent.at(1010) == "S1000 1010 (late)");
+  agent.mind.take("A(late)");
+  agent.done();
+  REQUIRE(agent.acts.back().due == 1010 + 3 + 10);
+  agent.mind.forget();
+  agent.mind.sense(0, "(early)");
+  REQUIRE(agent.at(10) == "S0 10 (early)");
+  REQUIRE(agent.mind.horizon() == 10 + 3 + 10);
+  agent.mind.take("A(early)");
+  agent.done();
+  REQUIRE(agent.acts.back().data == "(early)");
+  REQUIRE(agent.acts.back().due == 10 + 3 + 10);
+}
+
 TEST_CASE("a sensation arrives after its latency and opens a cycle; acts take effect after think time and latency") {
   Talk t;
   t.mind.sense(1, "");
