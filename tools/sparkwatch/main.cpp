@@ -92,6 +92,7 @@ class Copy {
   double time_ = 0;
 };
 
+// NOLINTNEXTLINE(bugprone-exception-escape): options that are set up wrongly end the program
 int main(int argc, char** argv) {
   std::string host = "127.0.0.1", mesh;
   int port = 3200, messages = 0;
