@@ -115,11 +115,12 @@ void ProxyClasses::define(Node& mount, const List& message, std::size_t bytes) {
     defined.local = local ? local->name() : std::string();
     defined.plain.clear();
     defined.name = make(mount, defined, local);
-    if (!local && mount.ancestor<SceneNode>() && message.size() > 8 && !message[8].toList().empty())
+    if (!local && mount.ancestor<SceneNode>() && message.size() > 8 && !message[8].toList().empty() &&
+        defined.times == 1)
       mount.kernel().log().warning(
           "{}: nodes of the other host's class {} are not in this scene, neither to be seen nor met: no plugin here "
           "has "
-          "the class. Add plugin \"{}\" to the config.",
+          "it. Add plugin \"{}\" to the config.",
           mount.path(), message[1].toString(), message[4].toString());
   } catch (const std::logic_error&) {  // a list is too short
     throw Error("the other host describes a class in a way that is not understood");

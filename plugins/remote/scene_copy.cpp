@@ -18,6 +18,16 @@ constexpr std::array kCalls{"load", "setScale", "resetMaterials", "setTransparen
 
 const List& listAt(const List& list, std::size_t index) { return at(list, index, Value::Type::list).toList(); }
 
+/// Throws Error for numbers that no scene should have, whatever the property accepts: NaN, and in vectors and meshes
+/// what is not finite or too large.
+void check(const Value& value, bool inList = false) {
+  if (value.isList())
+    for (const Value& each : value.toList()) check(each, true);
+  else if (value.type() == Value::Type::number &&
+           (std::isnan(value.toNumber()) || (inList && !(std::abs(value.toNumber()) <= Transform::kMaxMagnitude))))
+    throw Error(fmt::format("expected finite numbers from -1e9 to 1e9, found {}", value.text()));
+}
+
 /// Throws Error unless the numbers are a matrix that a transform of this host may have.
 Matrix matrixOf(const List& numbers) {
   Matrix m;
@@ -34,7 +44,8 @@ Matrix matrixOf(const List& numbers) {
 void call(Leaf& leaf, ClassObject& local, const List& described) {
   const std::string& name = textAt(described, 0);
   const Method* const method = local.method(name);
-  if (!method || std::find(kCalls.begin(), kCalls.end(), name) == kCalls.end()) return;
+  if (described.size() < 2 || !method || std::find(kCalls.begin(), kCalls.end(), name) == kCalls.end()) return;
+  check(described[1]);
   Args args{listAt(described, 1)};
   method->call(leaf, args);
 }
@@ -44,6 +55,7 @@ void set(Leaf& leaf, ClassObject& local, const List& described) {
   if (!property || property->readOnly || property->name == "name" || described.size() < 2) return;
   const Value& value = described[1];
   if (property->get(leaf) == value) return;
+  check(value);
   Args args{std::span(&value, 1)};
   writeProperty(*property, leaf, args);
 }

@@ -46,8 +46,9 @@ List decode(std::string_view bytes) {
 
 const Value& at(const List& message, std::size_t index, Value::Type type) {
   if (index < message.size() && message[index].type() == type) return message[index];
-  throw BadMessage(fmt::format("expected a message '{}' with a {} as element {}, found {}", message[0].plain(),
-                               typeName(type), index, index < message.size() ? message[index].text() : "none"));
+  throw BadMessage(fmt::format("expected a message '{}' with a {} as element {}, found {}",
+                               message.empty() ? "" : message[0].plain(), typeName(type), index,
+                               index < message.size() ? message[index].text().substr(0, 200) : "none"));
 }
 const std::string& textAt(const List& message, std::size_t index) {
   return at(message, index, Value::Type::string).toString();

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # row: B3
-# input: a host mounts another one that then sends without end: descriptions of classes, nodes, events, moves that are never possible with nodes behind them
+# input: a host mounts another one that then sends without end: descriptions of classes, nodes, events, poses and values, moves that are never possible with nodes behind them
 # right: the simulation goes on to its end, in little memory
 """Each kind is a host of its own, which answers as a host does before it floods."""
 import socket
@@ -46,6 +46,17 @@ def events():
         yield part
 
 
+def scenes():
+    one = [1.0 if n % 5 == 0 else 0.0 for n in range(16)]
+    for n in range(10**9):
+        yield message("scene", n + 1, [[1 + k % 2, one] for k in range(1000)], [[1, [], [["name", f"{n}"]]]] * 100, [[1, "name", f"{n}"]] * 100)
+
+
+def fat_scenes():
+    for n in range(10**9):
+        yield message("scene", n + 1, [], [], [[1, "name", "x" * 1000]] * 2000)
+
+
 def stuck():
     yield message("move", 1, 2)
     yield from nodes()
@@ -85,7 +96,7 @@ class Evil(threading.Thread):
 
 
 def main():
-    for flood in (classes, other_classes, nodes, comes_and_goes, events, stuck, unknown_class, silent_after_half):
+    for flood in (classes, other_classes, nodes, comes_and_goes, events, scenes, fat_scenes, stuck, unknown_class, silent_after_half):
         evil = Evil(flood)
         evil.start()
         with host("--rate", "max", "--duration", "1", "--log-level", "warning", config=CONFIG % evil.port) as h:
