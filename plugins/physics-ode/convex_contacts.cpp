@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "api/contact_points.h"
+#include "ode_shapes.h"
 
 namespace spark::ode {
 
@@ -134,6 +135,7 @@ int ConvexContacts::onMesh(const PlacedShape& a, dGeomID probe, dGeomID mesh, in
     toOde(r, rotation);
     dGeomSetPosition(probe, a.position.x(), a.position.y(), a.position.z());
     dGeomSetRotation(probe, rotation);
+    updateBounds(probe);
     return dCollide(probe, mesh, kMost, to, sizeof(dContactGeom));
   };
   all_.resize(std::size_t{5} * kMost);

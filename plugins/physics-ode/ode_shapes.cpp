@@ -13,28 +13,28 @@ using engine::ShapeDescription;
 
 namespace {
 
-/// The mesh without vertices that no triangle has: ODE fails on a mesh of one triangle with others.
-std::shared_ptr<const engine::Mesh> withoutUnused(std::shared_ptr<const engine::Mesh> mesh) {
-  const std::size_t points = mesh->vertices.size() / 3;
-  std::vector<std::uint32_t> now(points, 0);
-  for (const std::uint32_t i : mesh->triangles) now[i] = 1;
-  if (std::find(now.begin(), now.end(), 0U) == now.end()) return mesh;
+using MeshPointer = std::shared_ptr<const engine::Mesh>;
+
+/// A mesh of one triangle is cut in two, at the middle of its longest edge. ODE makes no tree of a single triangle, and
+/// its collisions with hulls and other meshes read the tree all the same.
+MeshPointer withTwoTriangles(MeshPointer mesh) {
+  if (mesh->triangles.size() != 3) return mesh;
+  const auto corner = [&](int i) {
+    return Vec3::Map(mesh->vertices.data() + std::size_t{3} * mesh->triangles[static_cast<std::size_t>(i % 3)]);
+  };
+  int longest = 0;
+  for (int i = 1; i < 3; ++i)
+    if ((corner(i) - corner(i + 1)).norm() > (corner(longest) - corner(longest + 1)).norm()) longest = i;
   auto out = std::make_shared<engine::Mesh>();
-  std::uint32_t count = 0;
-  for (std::size_t i = 0; i < points; ++i) {
-    if (now[i] == 0) continue;
-    const auto vertex = mesh->vertices.begin() + static_cast<std::ptrdiff_t>(3 * i);
-    out->vertices.insert(out->vertices.end(), vertex, vertex + 3);
-    now[i] = count++;
-  }
-  for (const std::uint32_t i : mesh->triangles) out->triangles.push_back(now[i]);
+  const Vec3 a = corner(longest), b = corner(longest + 1), c = corner(longest + 2), middle = (a + b) / 2;
+  for (const Vec3& p : {a, b, c, middle}) out->vertices.insert(out->vertices.end(), p.begin(), p.end());
+  out->triangles = {0, 3, 2, 3, 1, 2};
   return out;
 }
 
 }  // namespace
 
-OdeMesh::OdeMesh(std::shared_ptr<const engine::Mesh> from)
-    : mesh(withoutUnused(std::move(from))), data(dGeomTriMeshDataCreate()) {
+OdeMesh::OdeMesh(MeshPointer from) : mesh(withTwoTriangles(std::move(from))), data(dGeomTriMeshDataCreate()) {
   dGeomTriMeshDataBuildDouble(data, mesh->vertices.data(), 3 * sizeof(double),
                               static_cast<int>(mesh->vertices.size() / 3), mesh->triangles.data(),
                               static_cast<int>(mesh->triangles.size()), 3 * sizeof(std::uint32_t));
@@ -83,9 +83,7 @@ dGeomID OdeHull::probeAt(dGeomID geom, int which) {
   const dReal* const p = dGeomGetPosition(geom);
   dGeomSetPosition(out, p[0], p[1], p[2]);
   dGeomSetRotation(out, dGeomGetRotation(geom));
-  // Outside of a space nothing updates the bounds, by which ODE selects triangles of a mesh.
-  dReal bounds[6];
-  dGeomGetAABB(out, bounds);
+  updateBounds(out);
   return out;
 }
 
@@ -161,6 +159,11 @@ dGeomID createGeom(const ShapeDescription& s, dSpaceID space, MadeShapes& made, 
 void destroyGeom(dGeomID geom) {
   posePutBack();
   dGeomDestroy(geom);
+}
+
+void updateBounds(dGeomID geom) {
+  dReal bounds[6];
+  dGeomGetAABB(geom, bounds);
 }
 
 bool reshape(dGeomID geom, const ShapeDescription& from, const ShapeDescription& to) {

@@ -73,6 +73,8 @@ struct SharedShape {
 /// Creates ODE's geom of a shape. What it refers to is written to `shared`.
 dGeomID createGeom(const engine::ShapeDescription& shape, dSpaceID space, MadeShapes& made, SharedShape& shared);
 void destroyGeom(dGeomID geom);
+/// Updates the bounds of a geom in no space, by which ODE selects triangles of a mesh. Nothing else does.
+void updateBounds(dGeomID geom);
 /// Changes the dimensions of ODE's geom, so that it keeps its position in the space's list. Returns false when the geom
 /// must be created again.
 bool reshape(dGeomID geom, const engine::ShapeDescription& from, const engine::ShapeDescription& to);

@@ -113,6 +113,30 @@ TEST_CASE("each shape rests on a convex hull, also on one whose origin is outsid
           {&engine::Capabilities::rotation});
 }
 
+TEST_CASE("each shape rests on a mesh of one, two or three triangles, also beside others without area") {
+  const std::vector<double> corners = {-3, -3, 0, 3, -3, 0, 0, 4, 0, 0, 0, 0};
+  const std::vector<std::uint32_t> floors[] = {
+      {0, 1, 2}, {0, 1, 2, 0, 1, 2}, {0, 1, 3, 1, 2, 3}, {0, 1, 3, 1, 2, 3, 2, 0, 3}, {0, 1, 2, 3, 3, 3, 0, 0, 1}};
+  const engine::ShapeDescription shapes[] = {{.shape = Shape::box, .lengths = {0.4, 0.4, 0.4}},
+                                             {.shape = Shape::sphere, .radius = 0.2},
+                                             {.shape = Shape::cylinder, .radius = 0.2, .length = 0.4},
+                                             hull({0.4, 0.4, 0.4}),
+                                             meshOf(cube({0.4, 0.4, 0.4}))};
+  for (const auto& floor : floors)
+    for (const auto& shape : shapes)
+      withEngines(
+          [&](EngineWorld& w) {
+            CAPTURE(floor.size(), static_cast<int>(shape.shape));
+            // Far from the origin, and sliding.
+            w.geom(meshOf({corners, floor}), BodyHandle::none, {{40, -30, 10}, Mat3::Identity()});
+            const BodyHandle b = thing(w, shape, {40.05, -30.9, 10.205}, 0.4);
+            w.world.setLinearVelocity(b, {0.5, 0.5, 0});
+            w.run(1);
+            CHECK(w.position(b).z() == Approx(10.2).margin(0.012));
+          },
+          {&engine::Capabilities::rotation, &engine::Capabilities::meshes});
+}
+
 TEST_CASE("hulls stand on each other: a tower of five") {
   withEngines(
       [](EngineWorld& w) {
