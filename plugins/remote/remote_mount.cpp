@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "api/descriptors.h"
+#include "api/files.h"
 #include "api/scene.h"
 #include "messages.h"
 #include "spark/error.h"
@@ -25,6 +26,8 @@ constexpr std::size_t kMostEventBytes = 64 << 20;  // of its events that wait he
 constexpr std::chrono::milliseconds kMostTime{5};  // for what it sends, at a time: the rest waits
 constexpr std::chrono::seconds kQuiet{1};          // without a message, after which it is not waited for
 constexpr std::uint64_t kNoRequest = ~std::uint64_t{0};
+// Decisions on the tape: the other host was quiet; a wait ends; an event waits for the next cycle.
+constexpr const char *kIsQuiet = "remote quiet", *kWaitEnds = "remote wait", *kLater = "remote later";
 constexpr const char* kAsked = "another host is asked about it just now";
 constexpr const char* kPasses = "it passes an event of another host just now";
 }  // namespace
@@ -33,6 +36,7 @@ void RemoteMount::describe(Description<RemoteMount>& d) {
   using M = RemoteMount;
   d.doc("A part of another host's tree: the nodes below it are that host's.");
   d.implements<IRemoteLink>();
+  d.implements<IConnectionConsumer>();
   d.property("address", &M::address_).ofProcess().doc("Where the other host listens: host:port or a Unix socket.");
   d.property("of", &M::of_).doc("Path of the node in the other host whose children appear here.");
   d.property("clientName", &M::clientName_).doc("How this host introduces itself; the other one's log has it.");
@@ -51,10 +55,11 @@ void RemoteMount::describe(Description<RemoteMount>& d) {
       .doc(
           "Simulated time since the last values came: in each cycle of the other host, also where nothing has "
           "changed.");
-  d.property("connected", &M::connected).ofProcess().doc("Whether there is a link.");
+  d.property("connected", &M::isConnected).ofProcess().doc("Whether there is a link.");
   d.property("lostBecause", &M::lostBecause).ofProcess().doc("Why there is none.");
   d.link(&M::simulation_, At<ISimulation>());
   d.link(&M::server_, At<RemoteServer>());
+  d.link(&M::tape_, At<IInputTape>()).doc("Records what the other host sends, or plays it.");
   d.method("connect", &M::connect).parameters({"token"}).doc("Connects, and makes the nodes.");
   d.method("close", &M::close).doc("Disconnects.");
 }
@@ -83,7 +88,7 @@ std::unique_ptr<Wire> RemoteMount::open() {
 }
 
 void RemoteMount::connect(const Secret& token) {
-  if (wire_) throw Error(fmt::format("{} is connected to {} already", path(), address_));
+  if (isConnected()) throw Error(fmt::format("{} is connected to {} already", path(), address_));
   kernel().root().require<RemoteServer>();  // it serves this mount
   mirror_.clear();
   events_.clear();
@@ -92,9 +97,15 @@ void RemoteMount::connect(const Secret& token) {
   sources_.clear();
   handled_ = 0;
   quiet_ = false;
-  wire_ = open();
-  wire_->setLimit(kMostHostBytes);
-  wire_->send({kHello, kProtocol, token.text, clientName_, of_, ancestor<SceneNode>() != nullptr});
+  ++key_;
+  ended_ = false;
+  replayed_.clear();
+  replays_ = tape_ && tape_->playing();
+  if (!replays_) {
+    wire_ = open();
+    wire_->setLimit(kMostHostBytes);
+  }
+  send({kHello, kProtocol, token.text, clientName_, of_, ancestor<SceneNode>() != nullptr});
   lostBecause_.clear();
   saidReady_ = false;
   awaitReply(0);
@@ -102,13 +113,15 @@ void RemoteMount::connect(const Secret& token) {
 }
 
 void RemoteMount::close() {
-  if (!wire_) return;
-  wire_.reset();
-  lostBecause_ = "it was closed";
+  if (!isConnected()) return;
+  lose("it was closed");
+  tellLost_ = false;
 }
 
 void RemoteMount::lose(std::string why) {
+  if (tape_ && wire_ && saidReady_) tape_->put({.kind = Input::Kind::leave, .place = path(), .key = key_, .text = why});
   wire_.reset();
+  replays_ = false;
   lostBecause_ = std::move(why);
   tellLost_ = true;
 }
@@ -130,13 +143,13 @@ Value RemoteMount::ask(std::string_view request, const Leaf& node, List argument
 Value RemoteMount::read(const Leaf& node, const std::string& property) {
   std::optional<Value> last;
   if (const Value* const known = mirror_.value(node, property)) last = *known;
-  if (last && (!wire_ || (server_ && server_->inCycle()) || isQuiet())) return *last;
+  if (last && (!isConnected() || (server_ && server_->inCycle()) || isQuiet())) return *last;
   const auto silence = [&] {
     return Error(fmt::format("{}: the host at {} has been quiet for {:.1f} s, and the value was never read before",
                              node.path(), address_, std::chrono::duration<double>(Clock::now() - came_).count()));
   };
   const bool quiet = isQuiet();
-  if (wire_ && !last && quiet_) throw silence();
+  if (isConnected() && !last && quiet_) throw silence();
   const List reply = askAbout(kGet, node, {property, true},
                               last || quiet ? std::optional(std::min(patience_, timeout_)) : std::nullopt);
   if (reply.empty()) {
@@ -149,6 +162,11 @@ Value RemoteMount::read(const Leaf& node, const std::string& property) {
 
 /// True if the other host owes an answer, or has sent nothing for long.
 bool RemoteMount::isQuiet() {
+  const bool quiet = isQuietNow();
+  return tape_ && saidReady_ ? tape_->decide(kIsQuiet, key_, quiet, false) : quiet;
+}
+
+bool RemoteMount::isQuietNow() {
   if (!wire_ || !(quiet_ || Clock::now() - came_ > kQuiet)) return false;
   if (server_ && server_->inCycle()) return true;
   List none;
@@ -168,8 +186,8 @@ List RemoteMount::askAbout(std::string_view request, const Leaf& node, List argu
   const std::uint64_t number = ++lastRequest_;
   List message{request, number, pathOf(node)};
   std::move(arguments.begin(), arguments.end(), std::back_inserter(message));
-  if (!wire_) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
-  wire_->send(message);
+  if (!isConnected()) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+  send(message);
   List reply = awaitReply(number, patience);
   if (!reply.empty() && reply[0].toString() == kError)
     throw Error(reply.size() > 2 ? reply[2].plain() : "the other host gives no reason");
@@ -178,6 +196,11 @@ List RemoteMount::askAbout(std::string_view request, const Leaf& node, List argu
 
 /// Waits for the answer to a request, or to `hello` (0). Changes of the tree are followed meanwhile; events wait.
 List RemoteMount::awaitReply(std::uint64_t number, std::optional<double> patience) {
+  if (replays_) return awaitRecorded(number, patience.has_value());
+  const struct Wait {
+    RemoteMount& mount;
+    ~Wait() { mount.endWait(); }
+  } wait{*this};
   const auto end = Clock::now() + std::chrono::duration<double>(patience.value_or(timeout_));
   List reply;
   try {
@@ -199,9 +222,81 @@ List RemoteMount::awaitReply(std::uint64_t number, std::optional<double> patienc
   }
 }
 
+/// The same while a recording is played.
+List RemoteMount::awaitRecorded(std::uint64_t number, bool patient) {
+  List reply;
+  const auto handle = [&] {
+    while (reply.empty() && receiveOne(reply, number)) {
+    }
+    return !reply.empty();
+  };
+  if (!saidReady_) {
+    auto* const files = kernel().root().find<IFileServer>();
+    if (!files)
+      throw Error(
+          fmt::format("{}: a recording has what the other host sent as files: expected files() in the config", path()));
+    ++conversations_;
+    for (Value& message : decode(files->read(conversationName())))
+      if (message.isString()) replayed_.push_back(std::move(message.toString()));
+    replayed_.pop_front();  // the kind
+    if (handle()) return reply;
+  } else {
+    const bool here = handle();
+    if (!here) tape_->play();
+    const bool came = here || handle();
+    tape_->decide(kWaitEnds, key_, true, false);
+    if (came) return reply;
+  }
+  quiet_ = true;
+  if (patient && !ended_) return {};
+  lose(ended_ ? "it left in the recorded run" : "it did not answer in the recorded run");
+  throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+}
+
+/// The name as a file of what came while the config waited for an answer.
+std::string RemoteMount::conversationName() const { return fmt::format("remote{}.{}", path(), conversations_); }
+
+/// Puts a message on the tape. While the config runs there is none yet: what comes then is kept as texts of the run,
+/// one for each time that it waited.
+void RemoteMount::note(std::string_view message) {
+  if (!tape_ || !wire_) return;
+  if (saidReady_)
+    tape_->put({.kind = Input::Kind::message, .place = path(), .key = key_, .text = message});
+  else
+    conversation_.emplace_back(message);
+}
+
+void RemoteMount::endWait() {
+  if (!tape_ || replays_) return;
+  if (saidReady_) {
+    tape_->decide(kWaitEnds, key_, true, false);
+    return;
+  }
+  ++conversations_;
+  conversation_.insert(conversation_.begin(), "came");
+  kernel().sources().add("file", conversationName(), encode(std::exchange(conversation_, {})));
+}
+
+/// The next message that has arrived; valid until the next one is taken.
+std::optional<std::string_view> RemoteMount::take() {
+  if (wire_) {
+    const auto bytes = wire_->take();
+    if (bytes) note(*bytes);
+    return bytes;
+  }
+  if (replayed_.empty()) return std::nullopt;
+  taken_ = std::move(replayed_.front());
+  replayed_.pop_front();
+  return taken_;
+}
+
+void RemoteMount::received(IConnection&, std::string_view message) { replayed_.emplace_back(message); }
+
+void RemoteMount::disconnected(IConnection&) { ended_ = true; }
+
 /// Handles one message that has arrived; false if there is none. The answer to request `number` goes to `reply`.
 bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {
-  const auto bytes = wire_->take();
+  const auto bytes = take();
   if (!bytes) return false;
   List message = decode(*bytes);
   const std::string& kind = message[0].toString();
@@ -246,9 +341,9 @@ void RemoteMount::listen(Leaf& node, const std::string& channel) {
     if (listener.node.get() == &node && listener.channel->name() == channel) return;
   const std::uint64_t number = ++lastListener_;
   const InUse asked(node, kAsked);
-  if (!wire_) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
+  if (!isConnected()) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
   const std::uint64_t request = ++lastRequest_;
-  wire_->send({kListen, request, number, pathOf(node), channel, waits_});
+  send({kListen, request, number, pathOf(node), channel, waits_});
   const List reply = awaitReply(request);
   if (reply[0].toString() == kError)
     throw Error(reply.size() > 2 ? reply[2].plain() : "the other host gives no reason");
@@ -259,14 +354,17 @@ void RemoteMount::poll() {
   if (passing_) return;  // a handler of an event runs cycles
   passing_ = true;
   const InUse busy(*this, kPasses);
-  if (wire_) {
-    if (!saidReady_) wire_->send({kReady});  // the run loop runs: the config is done
+  if (isConnected()) {
+    if (!saidReady_) {  // the run loop runs: the config is done
+      send({kReady});
+      if (tape_ && wire_) tape_->put({.kind = Input::Kind::connect, .place = path(), .key = key_, .text = address_});
+    }
     saidReady_ = true;
     try {
-      if (!wire_->flush()) throw Error("the connection is broken");
+      if (wire_ && !wire_->flush()) throw Error("the connection is broken");
       mirror_.catchUp();
       acknowledge();
-      const bool alive = wire_->receive();
+      const bool alive = wire_ ? wire_->receive() : !ended_;
       if (handleWhatCame() && !alive) throw Error("the connection ended");
     } catch (const std::exception& e) {
       lose(e.what());
@@ -287,11 +385,15 @@ void RemoteMount::poll() {
 bool RemoteMount::handleWhatCame() {
   List none;
   const auto end = Clock::now() + kMostTime;
-  while (wire_ && Clock::now() < end) {
+  while (isConnected()) {
+    const bool late = Clock::now() >= end;
     if (!events_.empty()) {
+      if (tape_ ? tape_->decide(kLater, key_, late, false) : late) return false;
       const List event = std::move(events_.front());
       events_.pop_front();
       pass(event);
+    } else if (late && !replays_) {
+      return false;
     } else if (!receiveOne(none, kNoRequest)) {
       return true;
     }
@@ -314,7 +416,7 @@ void RemoteMount::pass(const List& event) {
                                                   .cycle = event[5].toInteger(),
                                                   .data = event[6].isNil() ? nullptr : &event[6],
                                                   .answer = event[7].toBool() ? &answer : nullptr});
-  if (number != 0 && wire_) wire_->send({kDone, number, answer});
+  if (number != 0) send({kDone, number, answer});
 }
 
 }  // namespace spark

@@ -24,7 +24,7 @@
 namespace spark {
 
 /// The mount point: below it are nodes for those of another host.
-class RemoteMount : public Node, public IRemoteLink {
+class RemoteMount : public Node, public IRemoteLink, public IConnectionConsumer {
   SPARK_CLASS(RemoteMount, Node)
  public:
   static void describe(Description<RemoteMount>& d);
@@ -44,6 +44,11 @@ class RemoteMount : public Node, public IRemoteLink {
     return !events_.empty() || tellLost_ || (wire_ && (!saidReady_ || wire_->holds()));
   }
   int descriptor() override { return wire_ ? wire_->descriptor() : -1; }
+
+  // What a recording that is played passes on.
+  void connected(IConnection&) override {}
+  void received(IConnection& connection, std::string_view message) override;
+  void disconnected(IConnection& connection) override;
 
  protected:
   void onUnlink() override;
@@ -67,14 +72,24 @@ class RemoteMount : public Node, public IRemoteLink {
   List askAbout(std::string_view request, const Leaf& node, List arguments, std::optional<double> patience = {});
   std::string pathOf(const Leaf& node) const;
   List awaitReply(std::uint64_t number, std::optional<double> patience = {});
+  List awaitRecorded(std::uint64_t number, bool patient);
   bool isQuiet();
+  bool isQuietNow();
+  std::optional<std::string_view> take();
+  void note(std::string_view message);
+  void endWait();
+  std::string conversationName() const;
+  void send(const List& message) {
+    if (wire_) wire_->send(message);
+  }
   void acknowledge();
   double age() const;
   bool receiveOne(List& reply, std::uint64_t number);
   bool handleWhatCame();
   void pass(const List& event);
   void lose(std::string why);
-  bool connected() const { return wire_ != nullptr; }
+  /// There is a link, or a recording of one.
+  bool isConnected() const { return wire_ || replays_; }
   const std::string& lostBecause() const { return lostBecause_; }
 
   boost::asio::io_context io_;
@@ -95,6 +110,14 @@ class RemoteMount : public Node, public IRemoteLink {
   std::string lostBecause_ = "it was never connected";
   Link<ISimulation> simulation_;
   Link<RemoteServer> server_;
+  Link<IInputTape> tape_;
+  bool replays_ = false;              ///< a recording is played: what the other host sent is on the tape
+  bool ended_ = false;                ///< the recorded link has
+  std::deque<std::string> replayed_;  ///< messages of the recording, to be handled
+  std::string taken_;                 ///< the last one of them
+  List conversation_;                 ///< messages while the config runs
+  std::size_t conversations_ = 0;     ///< requests while configs ran
+  std::uint64_t key_ = 0;             ///< of the link on the tape
   bool tellLost_ = false, passing_ = false, saidReady_ = false;
 };
 

@@ -45,10 +45,10 @@ class Served(Live):
 class Mounted:
     """A host that mounts the scene of `served` below a room and judges."""
 
-    def __init__(self, folder, served, code, *arguments):
+    def __init__(self, folder, served, code, *arguments, **more):
         (folder / "mounts.lua").write_text(MOUNTS % (Path(__file__).resolve().parent / "judge.lua", served.address, code))
         self.process = subprocess.Popen([str(a) for a in (BIN / "sparkhost", "--config", folder / "mounts.lua", "--log-level", "info", *arguments)],
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", **more)
 
     def __enter__(self):
         return self
