@@ -350,6 +350,14 @@ void putQuoted(std::string_view text, ByteWriter& out) {
   out.put('"');
 }
 
+/// Not inlined: almost all texts are short words, and writing those is the time of a message.
+[[gnu::noinline]] void putText(std::string_view text, bool quoted, ByteWriter& out) {
+  if (quoted)
+    putQuoted(text, out);
+  else
+    out.put(text);
+}
+
 /// The shortest digits that are read back as the same number.
 char* putShortest(char* at, double v) {
   if (std::isnan(v)) return std::copy_n("nan", 3, at);
@@ -366,16 +374,12 @@ char* writeElements(const Predicates& from, const Token* t, const Token* end, co
     const Token* const next = t + (t->kind == Token::Kind::list ? t->size : 1);
     switch (t->kind) {
       case Token::Kind::text:
-        if (t->quoted) {
-          out.end(at);
-          putQuoted(from.textOf(*t), out);
-          at = out.room(kTokenRoom);
-        } else if (t->size <= Token::kShort) {
+        if (t->size <= Token::kShort && !t->quoted) {
           std::memcpy(at, t->letters, Token::kShort);
           at += t->size;
         } else {
           out.end(at);
-          out.put(from.textOf(*t));
+          putText(from.textOf(*t), t->quoted, out);
           at = out.room(kTokenRoom);
         }
         break;
