@@ -18,7 +18,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
 #include <type_traits>
+#include <utility>
 
 #include "api/blocks.h"
 #include "spark/abi/api/extension.h"
@@ -62,9 +65,12 @@ inline IExtended* worldAround(const Leaf& node) {
 /// A node with a block.
 class IExtension {
  public:
-  SPARK_INTERFACE(IExtension, 1);
+  SPARK_INTERFACE(IExtension, 2);
   virtual ~IExtension() = default;
   virtual Leaf& leaf() = 0;
+  /// What the author of a scene wrote, for messages: "<mimic> (arm.urdf:9:5)"; the name of the node's class, unless an
+  /// importer made it. "": nothing that a file says, so nothing is lost where it has no effect.
+  virtual std::string writtenAs() const = 0;
   /// That of the name, without a number. Engines say which kinds they read: IEngine::reads().
   virtual std::uint64_t kind() const = 0;
 };
@@ -75,6 +81,8 @@ class Extension : public Leaf, public IExtension {
  public:
   Leaf& leaf() override { return *this; }
   std::uint64_t kind() const override { return kindOf(T::kKind); }
+  std::string writtenAs() const override { return writtenAs_.value_or(std::string(classObject()->name())); }
+  void setWrittenAs(std::string text) { writtenAs_ = std::move(text); }
   const T& numbers() const { return numbers_; }
   template <auto Member>
   auto get() const {
@@ -117,6 +125,7 @@ class Extension : public Leaf, public IExtension {
 
  private:
   T numbers_{};
+  std::optional<std::string> writtenAs_;
   IExtended* above_ = nullptr;
 };
 
@@ -125,6 +134,9 @@ template <class E>
 void describeExtension(Description<E>& d, const char* doc) {
   d.doc(doc);
   d.template implements<IExtension>();
+  d.method("setWrittenAs", &E::setWrittenAs)
+      .parameters({"text"})
+      .doc("What a file says of which an importer made it; messages name that in place of the class. Empty: nothing.");
 }
 
 }  // namespace spark::engine

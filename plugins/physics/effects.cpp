@@ -23,7 +23,7 @@ void Effects::check(engine::IEngine& engine, const engine::Model& model) {
   if (std::exchange(seen_, now) == now) return;
   const engine::Capabilities can = engine.capabilities();
   checkJoints(can, model);
-  if (!can.surfaces) checkSurfaces();
+  if (!can.surfaces) checkSurfaces(engine);
   if (can.findsContacts()) checkShapes(can);
   checkExtensions(engine);
 }
@@ -53,13 +53,25 @@ void Effects::checkLoops(const engine::Model& model) {
   }
 }
 
-void Effects::checkSurfaces() {
+namespace {
+/// True if the collider above a handler has a surface that is the engine's own.
+bool hasOwnSurface(const Leaf& handler, const engine::IEngine& engine) {
+  for (const auto& child : handler.parent()->children())
+    if (const auto extension = child->as<engine::IExtension>(); extension && engine.reads(extension->kind()))
+      return true;
+  return false;
+}
+}  // namespace
+
+void Effects::checkSurfaces(const engine::IEngine& engine) {
   for (const CollisionHandler* node : handlers) {
     const engine::Surface* const s = node->surface();
     if (!s) continue;
     if (s->bounceOn && s->bounce > 0) say(kBounce, *node, "bounce has");
     if (s->slipOn) say(kSlip, *node, "slip has");
     if (!s->pyramid && std::isfinite(s->mu)) say(kForceFriction, *node, "friction that is a force has");
+    if (s->pyramid && s->mu != 1 && !said_[kFriction] && !hasOwnSurface(*node, engine))
+      say(kFriction, *node, "a coefficient of friction (contactMu) has");
   }
 }
 
@@ -107,9 +119,11 @@ void Effects::checkShapes(const engine::Capabilities& can) {
 void Effects::checkExtensions(const engine::IEngine& engine) {
   for (engine::IExtension* const e : extensions) {
     if (engine.reads(e->kind()) || std::find(saidOf_.begin(), saidOf_.end(), e->kind()) != saidOf_.end()) continue;
+    const std::string written = e->writtenAs();
+    if (written.empty()) continue;
     saidOf_.push_back(e->kind());
     const Leaf& node = e->leaf();
-    node.kernel().log().warning("{}: {} has no effect with {}", node.path(), node.classObject()->name(), engineName_);
+    node.kernel().log().warning("{}: {} has no effect with {}", node.path(), written, engineName_);
   }
 }
 

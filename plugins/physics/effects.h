@@ -33,13 +33,14 @@ class Effects {
     kBounce,
     kSlip,
     kForceFriction,
+    kFriction,
     kMeshes,
     kHeightFields,
     kKinds
   };
   void checkJoints(const engine::Capabilities& can, const engine::Model& model);
   void checkLoops(const engine::Model& model);
-  void checkSurfaces();
+  void checkSurfaces(const engine::IEngine& engine);
   void checkShapes(const engine::Capabilities& can);
   void checkExtensions(const engine::IEngine& engine);
   void say(Kind kind, const Leaf& node, const char* what);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "api/provides.h"
 #include "spark/access.h"
 #include "spark/plugin.h"
 
@@ -67,14 +68,6 @@ Wanted read(std::string_view file, const List& arguments) {
   if (out.scale.size() == 2)
     throw Error(fmt::format("cannot import '{}': expected a scale of one number or three, found two", file));
   return out;
-}
-
-/// True if there is such a class, after loading the plugin that has it.
-bool provides(Kernel& kernel, const char* className) {
-  if (kernel.findClass(className)) return true;
-  const Plugin* const provider = kernel.plugins().providerOf(className);
-  if (provider) kernel.plugins().use(provider->name());
-  return provider;
 }
 
 }  // namespace

@@ -113,6 +113,7 @@ void ActuatorBuilder::makeEngineActuator(const Actuator& x) {
   const std::string name = x.name.empty() ? x.joint : x.name;
   Node& place = c_.transform(c_.top, c_.names.in(c_.top, name, "actuator"), Pose{});
   Leaf& node = place.create(kClass, "actuator");
+  setWritten(node, x.from.placed());
   setProperty(node, "type", n.type);
   for (const auto& [property, value] : settings) {
     const bool path = std::string_view(property) == "target" || std::string_view(property) == "reference";

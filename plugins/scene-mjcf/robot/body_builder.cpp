@@ -59,6 +59,8 @@ void setAxis(IJoint& made, const Joint& j, const Pose& world, const Flags& flags
   made.setParameter(JointParameter::dryFriction, 0, flags.frictionLoss ? j.dryFriction : 0);
   if (Leaf* const numbers = extensionOf(made.leaf(), "MujocoAxis")) {
     const Firmness& n = j.firmness;
+    setWritten(*numbers,
+               n == Firmness() ? "" : "how firm limits and friction are (solref, solimp, margin): " + j.from.placed());
     setProperty(*numbers, "stopSolref", toList(n.stopSolref));
     setProperty(*numbers, "stopSolimp", toList(n.stopSolimp));
     setProperty(*numbers, "stopMargin", n.stopMargin);
@@ -168,6 +170,7 @@ void BodyBuilder::addFreedom(const PlacedBody& p, const Joint& j, const std::str
   Leaf& node = c_.top.create(kClass, c_.names.in(c_.top, "", "freedom"));
   const Pose rest = j.kind == JointKind::free ? p.world : compose(inverse(c_.bodies[p.above].world), p.world);
   const Eigen::Quaterniond q(rest.rotation);
+  setWritten(node, "armature, friction, spring and limit of a ball or free joint: " + j.from.placed());
   setProperty(node, "armature", j.armature);
   setProperty(node, "frictionLoss", friction);
   setProperty(node, "stiffness", stiffness);

@@ -110,6 +110,7 @@ void Builder::setOptions(Node& root) {
   if (Leaf* const node = model_.meshesAreHulls ? extensionOf(*world, "MujocoOptions") : nullptr) {
     // As in MuJoCo alone.
     if (scenes) scenes->willChange(*node);
+    setWritten(*node, "");
     before.push_back({node, "allContacts", getProperty(*node, "allContacts")});
     setProperty(*node, "allContacts", true);
   }
@@ -117,6 +118,7 @@ void Builder::setOptions(Node& root) {
     Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
     if (!node) continue;
     if (scenes) scenes->willChange(*node);
+    if (o.ofMujoco) setWritten(*node, o.from.placed());
     try {
       before.push_back({node, o.property, getProperty(*node, o.property)});
       setProperty(*node, o.property, o.value);

@@ -17,7 +17,11 @@ void ConstraintBuilder::build() {
 }
 
 Leaf* ConstraintBuilder::make(const Element& from, const char* className, const std::string& name, const char* kind) {
-  if (provides(c_.top.kernel(), className)) return &c_.top.create(className, c_.names.in(c_.top, name, kind));
+  if (provides(c_.top.kernel(), className)) {
+    Leaf& made = c_.top.create(className, c_.names.in(c_.top, name, kind));
+    setWritten(made, from.placed());
+    return &made;
+  }
   c_.unsupported.add(from, fmt::format("<{}> needs the plugin physics-mujoco, which is not there", from.tag()));
   return nullptr;
 }

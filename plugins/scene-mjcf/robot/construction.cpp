@@ -2,23 +2,18 @@
 
 #include <fmt/format.h>
 
+#include "spark/access.h"
 #include "spark/kernel.h"
-#include "spark/plugin_object.h"
 
 namespace spark::mjcf {
-
-bool provides(Kernel& kernel, const char* className) {
-  if (kernel.findClass(className)) return true;
-  const Plugin* const provider = kernel.plugins().providerOf(className);
-  if (provider) kernel.plugins().use(provider->name());
-  return provider;
-}
 
 Leaf* extensionOf(Leaf& element, const char* className, const char* name) {
   Node& node = *element.asNode();
   if (Leaf* const there = node.child(name)) return there;
   return provides(element.kernel(), className) ? &node.create(className, name) : nullptr;
 }
+
+void setWritten(Leaf& extension, const std::string& text) { callMethod(extension, "setWrittenAs", List{text}); }
 
 Node& Construction::transform(Node& parent, const std::string& name, const Pose& local) {
   Node& node = *parent.create("Transform", name).asNode();

@@ -3,6 +3,7 @@
 /// What the builders of one MJCF model share.
 
 #include "api/physics.h"
+#include "api/provides.h"
 #include "names.h"
 #include "placed_bodies.h"
 
@@ -50,12 +51,12 @@ struct Construction {
   bool withoutParts = false;  ///< has() found no class for a sensor or an actuator
 };
 
-/// True if there is a class of this name; the plugin that provides it is used from now on.
-bool provides(Kernel& kernel, const char* className);
-
 /// The child `mujoco`, or `name`, of an element's node, which holds what MuJoCo alone reads; nullptr where no plugin
 /// provides its class.
 Leaf* extensionOf(Leaf& element, const char* className, const char* name = "mujoco");
+
+/// Says what of a file an extension was made of (IExtension::writtenAs()).
+void setWritten(Leaf& extension, const std::string& text);
 
 // Values for properties and methods.
 inline List toList(const Vec3& v) { return {v.x(), v.y(), v.z()}; }

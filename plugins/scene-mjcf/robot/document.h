@@ -44,6 +44,8 @@ struct Element {
   Error error(const std::string& text) const { return Error(where() + ": " + text); }
   /// "<motor> 'name'", or "<motor>" without a name; without brackets where the file is not XML.
   std::string named() const;
+  /// The same and its place: "<motor> 'name' (robot.xml:12:5)".
+  std::string placed() const { return named() + " (" + where() + ")"; }
 };
 
 /// Reads a file by its name. Throws Error.

@@ -72,14 +72,24 @@ void setShape(Leaf& collider, const ShapeDescription& s, const Pose& pose) {
 void setSurface(Node& collider, const engine::Mesh& surface) {
   Leaf* const mesh = extensionOf(collider, "MujocoMesh", "mujocoMesh");
   if (!mesh) return;
+  setWritten(*mesh, "");
   setProperty(*mesh, "vertices", List(surface.vertices.begin(), surface.vertices.end()));
   setProperty(*mesh, "triangles", trianglesOf(surface));
+}
+
+/// True if a surface has no numbers but those that act with every engine.
+bool isPlain(ContactNumbers m) {
+  m.friction[0] = ContactNumbers().friction[0];
+  m.priority = 0;
+  return m == ContactNumbers();
 }
 
 void setContact(Node& collider, const Geom& g) {
   const ContactNumbers& m = g.contact;
   const bool isEllipsoid = g.ellipsoid[0] > 0;
   if (Leaf* const numbers = m == ContactNumbers() && !isEllipsoid ? nullptr : extensionOf(collider, "MujocoSurface")) {
+    const bool isLost = isEllipsoid || !isPlain(m);
+    setWritten(*numbers, isLost ? "what a contact has beside sliding friction: " + g.from.placed() : "");
     setProperty(*numbers, "friction", toList(m.friction));
     setProperty(*numbers, "condim", m.condim);
     setProperty(*numbers, "priority", m.priority);
@@ -230,6 +240,8 @@ void GeomBuilder::surfaceOf(const Pair& p, const Node& first, const Node& second
     return;
   }
   Leaf& node = c_.top.create("MujocoPair", c_.names.in(c_.top, "", "pair"));
+  const bool isLost = p.condim || p.friction || p.solref || p.solimp || p.margin || p.gap;
+  setWritten(node, isLost ? "the surface of " + p.from.placed() : "");
   // What a pair does not give has MuJoCo's values for pairs, whatever its geoms have.
   if (p.condim) setProperty(node, "condim", *p.condim);
   if (p.friction) setProperty(node, "friction", toList(*p.friction));

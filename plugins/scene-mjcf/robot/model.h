@@ -37,6 +37,7 @@ struct Firmness {
   std::array<double, 2> stopSolref{0.02, 1}, frictionSolref{0.02, 1};
   std::array<double, 5> stopSolimp{0.9, 0.95, 0.001, 0.5, 2}, frictionSolimp{0.9, 0.95, 0.001, 0.5, 2};
   double stopMargin = 0;  ///< rad or m
+  bool operator==(const Firmness&) const = default;
 };
 
 /// A collision shape and a visible one.
