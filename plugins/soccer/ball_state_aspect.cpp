@@ -9,6 +9,8 @@ namespace spark {
 using soccer::Side;
 
 namespace {
+constexpr double kEqual = 1e-4;  ///< differences of distances that do not count [m]
+
 /// True if the ball's collider touches the trigger box of the goal that `side` defends.
 bool isInGoalBox(const soccer::Pitch& pitch, Side side) {
   const Ball* ball = pitch.ball()->leaf().ancestor<Ball>();
@@ -29,6 +31,7 @@ void BallStateAspect::describe(Description<BallStateAspect>& d) {
 }
 
 void BallStateAspect::rule(const Event& event) {
+  endActions();
   GameStateAspect* game = game_.get();
   if (!game) return;
   soccer::Pitch& pitch = game->pitch();
@@ -46,6 +49,7 @@ void BallStateAspect::rule(const Event& event) {
 }
 
 void BallStateAspect::rest(const Event&) {
+  endActions();
   kickers_.clear();
   touched_ = false;
   touchedBy_.fill(false);
@@ -90,6 +94,38 @@ BallStateAspect::Line BallStateAspect::crossedLine() const {
              : Line::touch;
 }
 
+bool BallStateAspect::mayAct(soccer::IBallAction::Kind kind) {
+  if (!std::exchange(isDecided_, true)) acting_ = decideActions();
+  return !acting_ || *acting_ == kind;
+}
+
+std::optional<soccer::IBallAction::Kind> BallStateAspect::decideActions() {
+  using Kind = soccer::IBallAction::Kind;
+  GameStateAspect* game = game_.get();
+  if (!game || !game->pitch().ball()) return {};
+  const Vec3 ball = game->pitch().ballPosition();
+  // The distances of those that would act, the nearest so far, and how many are as near.
+  bool kicks = false, catches = false;
+  double nearest = HUGE_VAL;
+  const auto distanceOf = [&](const Announced& a) {
+    const soccer::Player* player = a.effector ? a.action->reaches() : nullptr;
+    return player ? (player->position() - ball).norm() : HUGE_VAL;
+  };
+  for (const Announced& a : actions_) {
+    const double distance = distanceOf(a);
+    if (distance == HUGE_VAL) continue;
+    (a.action->kind() == Kind::kick ? kicks : catches) = true;
+    nearest = std::min(nearest, distance);
+  }
+  if (!kicks || !catches) return {};
+  const auto isNearest = [&](const Announced& a) { return distanceOf(a) <= nearest + kEqual; };
+  const auto equals = static_cast<std::uint64_t>(std::count_if(actions_.begin(), actions_.end(), isNearest));
+  std::uint64_t chosen = equals > 1 ? game->random().below(equals) : 0;
+  for (const Announced& a : actions_)
+    if (isNearest(a) && chosen-- == 0) return a.action->kind();
+  return {};
+}
+
 void BallStateAspect::addRival(const soccer::Player* player) {
   if (!player || player->side() == Side::none || rivals_.size() == rivals_.capacity() ||
       std::find(rivals_.begin(), rivals_.end(), player) != rivals_.end())
@@ -117,7 +153,6 @@ void BallStateAspect::findTouch(soccer::Pitch& pitch, double step) {
 }
 
 const soccer::Player* BallStateAspect::decideTouch(soccer::Pitch& pitch, double step) {
-  constexpr double kEqual = 1e-4;  // differences of distances that do not count [m]
   if (rivals_.size() <= 1) return rivals_.empty() ? nullptr : rivals_.front();
   // The distances before the step, which has pushed the ball away from the nearest.
   const auto before = [step](const IRigidBody& b) {
@@ -174,6 +209,7 @@ void BallStateAspect::saveState(StateWriter& out) const {
 void BallStateAspect::loadState(StateReader& in) {
   in.readInteger();
   kickers_.clear();
+  endActions();
   last_.agent = static_cast<int>(in.readInteger());
   last_.side = static_cast<Side>(in.readInteger());
   last_.unum = static_cast<int>(in.readInteger());

@@ -1,8 +1,24 @@
 #pragma once
 
+#include <optional>
+
 #include "game_state_aspect.h"
 
 namespace spark {
+
+namespace soccer {
+
+/// An effector whose action on the ball begins in this cycle.
+class IBallAction {
+ public:
+  enum class Kind { kick, catching };
+  virtual ~IBallAction() = default;
+  virtual Kind kind() const = 0;
+  /// The player, if the action would take effect where player and ball are now; otherwise nullptr.
+  virtual const Player* reaches() = 0;
+};
+
+}  // namespace soccer
 
 /// The state of the ball in this cycle: touches, on the field or not, in a goal or not. Runs after game state and
 /// before the rules.
@@ -33,6 +49,7 @@ class BallStateAspect : public SoccerControlAspect {
   BallStateAspect() {
     kickers_.reserve(kMaxRivals);
     rivals_.reserve(kMaxRivals);
+    actions_.reserve(kMaxRivals);
   }
   static void describe(Description<BallStateAspect>& d);
   void rule(const Event& event) override;
@@ -43,6 +60,13 @@ class BallStateAspect : public SoccerControlAspect {
   void kickedBy(const AgentAspect& agent) {
     if (kickers_.size() < kickers_.capacity()) kickers_.push_back(agent.number());
   }
+  /// Announces an action of this cycle, in the act phase. `effector`: the node that `action` is part of.
+  void announce(Leaf& effector, soccer::IBallAction& action) {
+    if (actions_.size() < actions_.capacity()) actions_.push_back({Ref<Leaf>(&effector), &action});
+  }
+  /// True if actions of this kind take effect in this cycle, in the prepare phase. A goalie that catches and a player
+  /// that kicks exclude each other: the nearer one acts; of those that are as near, a draw decides.
+  bool mayAct(soccer::IBallAction::Kind kind);
   /// True when a player touches the ball in this cycle.
   bool touched() const { return touched_; }
   /// True when a player of `side` touches the ball in this cycle, as first player or not.
@@ -75,10 +99,24 @@ class BallStateAspect : public SoccerControlAspect {
   /// The player whose touch counts in this cycle: the nearest of `rivals_`; nullptr: there is none.
   const soccer::Player* decideTouch(soccer::Pitch& pitch, double step);
   void addRival(const soccer::Player* player);
+  /// The kind that takes effect; nullopt: all do.
+  std::optional<soccer::IBallAction::Kind> decideActions();
+  /// Forgets the actions of the cycle.
+  void endActions() {
+    actions_.clear();
+    isDecided_ = false;
+  }
   void findGoal(const soccer::Pitch& pitch);
   std::string lastTeam() const { return soccer::sideName(last_.side); }
   int lastUnum() const { return last_.unum; }
 
+  struct Announced {
+    Ref<Leaf> effector;
+    soccer::IBallAction* action;
+  };
+  std::vector<Announced> actions_;                   ///< of this cycle; empty between cycles
+  bool isDecided_ = false;                           ///< `acting_` is of this cycle
+  std::optional<soccer::IBallAction::Kind> acting_;  ///< see decideActions()
   std::vector<int> kickers_;  ///< numbers of the agents that kick in this cycle; empty between cycles
   bool touched_ = false, newTouch_ = false, onField_ = true;
   std::array<bool, 2> touchedBy_{};  ///< left, right

@@ -9,7 +9,7 @@ namespace spark {
 
 /// `(kick elevation power)`: a force on the ball, away from the player, for some steps. The kick of the sphere robots
 /// of 2004, with the formulas of the installed base.
-class KickEffector : public Effector, public ISceneCalls {
+class KickEffector : public Effector, public ISceneCalls, public soccer::IBallAction {
   SPARK_CLASS(KickEffector, Effector)
  public:
   static void describe(Description<KickEffector>& d) {
@@ -50,8 +50,17 @@ class KickEffector : public Effector, public ISceneCalls {
     double v[2];
     if (!readNumbers(read, v, 2)) return read.remark();
     elevation_ = v[0], power_ = v[1];
+    match_.refresh(*this);
+    if (auto* state = match_.ball(); state && !pending_) state->announce(*this, *this);
     pending_ = true;
     return read.remark();
+  }
+  Kind kind() const override { return Kind::kick; }
+  const soccer::Player* reaches() override {
+    const soccer::Player* player = match_.player(*this);
+    const IRigidBody* ball = player ? match_.game()->pitch().ball() : nullptr;
+    return pending_ && ball && stepsLeft_ == 0 && !isInAir(*player) && distance(*player, *ball) <= reach() ? player
+                                                                                                           : nullptr;
   }
 
  protected:
@@ -75,6 +84,7 @@ class KickEffector : public Effector, public ISceneCalls {
     if (!pending_ && stepsLeft_ == 0) return;
     const soccer::Player* player = match_.player(*this);
     IRigidBody* ball = player ? match_.game()->pitch().ball() : nullptr;
+    const bool wins = !pending_ || !match_.ball() || match_.ball()->mayAct(Kind::kick);
     if (std::exchange(pending_, false)) {
       if (!player)
         refuse(0, [&] { return match_.whyNoPlayer(); });
@@ -83,7 +93,7 @@ class KickEffector : public Effector, public ISceneCalls {
       else if (stepsLeft_ > 0)
         miss(*player, "a kick is under way");
       else
-        start(*player, *ball);
+        start(*player, *ball, wins);
     }
     if (stepsLeft_ == 0) return;
     --stepsLeft_;
@@ -103,15 +113,16 @@ class KickEffector : public Effector, public ISceneCalls {
   }
 
   /// Starts a kick if the player is on the ground and near enough to the ball.
-  void start(const soccer::Player& player, const IRigidBody& ball) {
-    const SoccerSettings& s = *match_.settings();
-    const Vec3 from = player.position(), offset = ball.state().position - from;
-    if (from.z() > s.agentRadius + 0.01) return miss(player, "the player is in the air");
-    const double reach = s.agentRadius + s.ballRadius + margin_, distance = offset.norm();
-    if (distance > reach && distance < reach + kNear) return miss(player, "the ball is just out of reach");
-    if (distance > reach)
+  /// `wins`: no goalie catches the ball before.
+  void start(const soccer::Player& player, const IRigidBody& ball, bool wins) {
+    const Vec3 offset = ball.state().position - player.position();
+    if (!wins) return miss(player, "the goalie catches the ball before");
+    if (isInAir(player)) return miss(player, "the player is in the air");
+    const double most = reach(), found = distance(player, ball);
+    if (found > most && found < most + kNear) return miss(player, "the ball is just out of reach");
+    if (found > most)
       return refuse(
-          4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach, distance); });
+          4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", most, found); });
     const double theta = std::atan2(offset.y(), offset.x()) + noise(sigmaTheta_);
     const double phi = degToRad(noisyElevation());
     const double power = std::clamp(power_, 1.0, maxPower_) + noise(sigmaForce_);
@@ -119,6 +130,14 @@ class KickEffector : public Effector, public ISceneCalls {
         forceFactor_ * power * Vec3(std::cos(phi) * std::cos(theta), std::cos(phi) * std::sin(theta), std::sin(phi));
     stepsLeft_ = steps_;
   }
+
+  bool isInAir(const soccer::Player& player) const {
+    return player.position().z() > match_.settings()->agentRadius + 0.01;
+  }
+  static double distance(const soccer::Player& player, const IRigidBody& ball) {
+    return (ball.state().position - player.position()).norm();
+  }
+  double reach() const { return match_.settings()->agentRadius + match_.settings()->ballRadius + margin_; }
 
   /// The elevation with noise [deg]. The standard deviation is interpolated between that in the middle of the range and
   /// that at its ends.

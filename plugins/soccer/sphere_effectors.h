@@ -68,7 +68,7 @@ class DriveEffector : public Effector {
 };
 
 /// `(catch)`: the goalie catches the ball inside its penalty area and places it in front of itself.
-class CatchEffector : public Effector {
+class CatchEffector : public Effector, public soccer::IBallAction {
   SPARK_CLASS(CatchEffector, Effector)
  public:
   static void describe(Description<CatchEffector>& d) {
@@ -81,29 +81,61 @@ class CatchEffector : public Effector {
   }
   std::string predicate() const override { return "catch"; }
   std::string act(const Element& action) override {
+    match_.refresh(*this);
+    if (auto* state = match_.ball(); state && !pending_) state->announce(*this, *this);
     pending_ = true;
     return expectNoArguments(action);
+  }
+  Kind kind() const override { return Kind::catching; }
+  const soccer::Player* reaches() override {
+    const soccer::Player* goalie = match_.player(*this);
+    return pending_ && goalie && fault(*goalie) == 0 ? goalie : nullptr;
   }
 
  private:
   static constexpr double kClearRadius = 2, kClearDistance = 5, kGap = 0.07;  ///< of the installed base [m]
 
+  /// The number of what is against a catch, 0: nothing.
+  int fault(const soccer::Player& goalie) const {
+    const soccer::Pitch& pitch = match_.game()->pitch();
+    const Vec3 ball = pitch.ballPosition();
+    if (goalie.state->unum() != 1) return 1;
+    if (!pitch.ball() || !pitch.penaltyArea(goalie.side()).contains(ball.x(), ball.y())) return 2;
+    if (goalie.position().z() > pitch.settings().agentRadius + 0.01) return 3;
+    return (ball - goalie.position()).norm() > reach(pitch.settings()) ? 4 : 0;
+  }
+  double reach(const SoccerSettings& s) const { return s.agentRadius + s.ballRadius + margin_; }
+
   void prepare(const Event&) {
-    if (!std::exchange(pending_, false)) return;
+    if (!pending_) return;
     const soccer::Player* goalie = match_.player(*this);
+    const bool wins = !match_.ball() || match_.ball()->mayAct(Kind::catching);
+    pending_ = false;
     if (!goalie) return refuse(0, [&] { return match_.whyNoPlayer(); });
-    if (const int unum = goalie->state->unum(); unum != 1)
-      return refuse(1, [&] { return fmt::format("expected the goalie, number 1, found number {}", unum); });
     const soccer::Pitch& pitch = match_.game()->pitch();
     const SoccerSettings& s = pitch.settings();
-    const Vec3 from = goalie->position(), ball = pitch.ballPosition();
-    if (!pitch.ball() || !pitch.penaltyArea(goalie->side()).contains(ball.x(), ball.y()))
-      return refuse(2, [] { return "expected the ball in the own penalty area, found it elsewhere"; });
-    if (from.z() > s.agentRadius + 0.01)
-      return refuse(3, [] { return "expected the goalie on the ground, found it in the air"; });
-    if (const double reach = s.agentRadius + s.ballRadius + margin_, distance = (ball - from).norm(); distance > reach)
-      return refuse(
-          4, [&] { return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach, distance); });
+    const Vec3 from = goalie->position();
+    switch (fault(*goalie)) {
+      case 1:
+        return refuse(
+            1, [&] { return fmt::format("expected the goalie, number 1, found number {}", goalie->state->unum()); });
+      case 2:
+        return refuse(2, [] { return "expected the ball in the own penalty area, found it elsewhere"; });
+      case 3:
+        return refuse(3, [] { return "expected the goalie on the ground, found it in the air"; });
+      case 4:
+        return refuse(4, [&] {
+          return fmt::format("expected the ball within {:.2f} m, found it at {:.2f} m", reach(s),
+                             (pitch.ballPosition() - from).norm());
+        });
+      default:
+        break;
+    }
+    if (!wins) {
+      if (Log& log = kernel().log(); log.enabled(Level::debug))
+        log.debug("agent {}: catch: a player kicks the ball before", goalie->agent->number());
+      return;
+    }
 
     // Players near the new position of the ball are moved away.
     const Vec3 target = from + Vec3(direction(goalie->side()) * (s.agentRadius + s.ballRadius + kGap), 0, 0);
