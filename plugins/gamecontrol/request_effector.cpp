@@ -14,6 +14,7 @@ namespace {
 using Kind = PartRequest::Kind;
 
 constexpr const char* kAnswers = "_RequestAnswers";
+constexpr const char* kCamera = "ImagePerceptor";
 constexpr const char* kUsage =
     "expected (request (perceptor <class>) (name <name>) (at <node>)), or effector in its place, or (request (scene "
     "<file>) (at <node>))";
@@ -31,6 +32,16 @@ void writeWords(Predicates& out, std::string_view line) {
     else
       word += c;
   flush();
+}
+
+/// The number of nodes of a class below `node`.
+int countBelow(const Node& node, std::string_view className) {
+  int count = 0;
+  for (const auto& child : node.children()) {
+    count += child->classObject()->isA(className);
+    if (const Node* const inner = child->asNode()) count += countBelow(*inner, className);
+  }
+  return count;
 }
 
 std::string_view textOf(const Element& action, std::string_view name) {
@@ -92,6 +103,9 @@ void RequestPerceptor::loadState(StateReader& in) {
 void RequestEffector::describe(Description<RequestEffector>& d) {
   using R = RequestEffector;
   d.doc("(request (perceptor <class>) (name <name>) (at <node>)): gives the agent a perceptor or an effector.");
+  d.property("maxCameras", &R::maxCameras_)
+      .min(0)
+      .doc("An agent with as many cameras gets no more: each picture takes time of the simulation's thread.");
   d.property("maxParts", &R::maxParts_)
       .range(0, 1000)
       .doc("Number of requests that are granted; further ones are not.");
@@ -169,6 +183,8 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
       return fmt::format("expected the class of {} {}, found {}",
                          request.kind == Kind::perceptor ? "a perceptor," : "an effector,",
                          request.kind == Kind::perceptor ? "such as GPS" : "such as HingeEffector", request.type);
+    if (type->isA(kCamera) && countBelow(root, kCamera) >= maxCameras_)
+      return fmt::format("the robot has {} cameras, more are not granted", maxCameras_);
     if (parent->find(request.name)) return fmt::format("there is a node {} already", request.name);
   }
 

@@ -61,7 +61,7 @@ class RequestEffector : public Effector {
 
   static constexpr std::size_t kMaxText = 128;   ///< bytes of a name, a class or a file
   static constexpr std::size_t kMaxPending = 8;  ///< requests of one cycle
-  int maxParts_ = 32, parts_ = 0;
+  int maxParts_ = 32, parts_ = 0, maxCameras_ = 4;
   std::string folder_ = "rsg/agent/";
   std::vector<Request> pending_;
 };

@@ -29,6 +29,8 @@ class AgentProgram {
   AgentProgram(const AgentProgram&) = delete;
   AgentProgram& operator=(const AgentProgram&) = delete;
 
+  /// The group of its processes.
+  pid_t group() const { return pid_; }
   /// True once it has ended. Does not wait.
   bool ended() const;
   /// See AgentLink.

@@ -12,6 +12,7 @@
 #include <cstring>
 #include <utility>
 
+#include "connected_program.h"
 #include "spark/error.h"
 
 namespace spark::spades {
@@ -25,7 +26,7 @@ std::pair<int, int> listenForOne() {
   at.sin_family = AF_INET;
   at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof at;
-  if (::bind(listener, reinterpret_cast<const sockaddr*>(&at), size) != 0 || ::listen(listener, 1) != 0 ||
+  if (::bind(listener, reinterpret_cast<const sockaddr*>(&at), size) != 0 || ::listen(listener, 16) != 0 ||
       ::getsockname(listener, reinterpret_cast<sockaddr*>(&at), &size) != 0) {
     const int error = errno;
     ::close(listener);
@@ -93,11 +94,18 @@ void TcpAgent::poll() {
     keepMessages();
   } else if (program_->ended()) {
     lost_ = "its program has ended without connecting";
+    if (strangers_ > 0) lost_ += fmt::format(" ({} connections of other programs were refused)", strangers_);
   }
 }
 
 void TcpAgent::accept() {
-  const int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  int socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  // Any program of the machine can connect, that of an opponent, too.
+  while (socket >= 0 && !isConnectedTo(socket, program_->group())) {
+    ::close(socket);
+    ++strangers_;
+    socket = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+  }
   if (socket < 0) return;
   const int on = 1;
   ::setsockopt(socket, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);

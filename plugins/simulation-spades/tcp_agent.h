@@ -54,6 +54,7 @@ class TcpAgent final : public AgentLink {
   std::deque<std::string> messages_;         ///< of the program, that wait for a cycle
   std::size_t bytes_ = 0;                    ///< of memory of messages_
   std::string lost_;
+  int strangers_ = 0;  ///< connections of other programs, which were refused
   bool asked_ = false, ready_ = false, begun_ = false;
   Cycle cycle_ = Cycle::none;
 };

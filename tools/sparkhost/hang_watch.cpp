@@ -1,5 +1,10 @@
 #include "hang_watch.h"
 
+#include <signal.h>
+#include <unistd.h>
+
+#include <csignal>
+
 namespace sparkhost {
 
 using namespace spark;
@@ -15,6 +20,12 @@ void HangWatch::describe(Description<HangWatch>& d) {
       .unit("s")
       .range(0, 1e6)
       .doc("Wall time in one call of a node's code that counts as a hang; 0: none does.");
+  d.property("giveUp", &HangWatch::giveUp, &HangWatch::setGiveUp)
+      .unit("s")
+      .range(0, 1e6)
+      .doc(
+          "Wall time for which such a call may go on after the host was asked to end; then the process ends. 0: for "
+          "ever.");
 }
 
 void HangWatch::install(Kernel& kernel) {
@@ -62,12 +73,25 @@ void HangWatch::check() {
   if (watchdog_->gotOn()) {
     if (reported_) reportEnd();
     lastProgress_ = Clock::now();
-    stuck_ = 0;
+    stuck_ = stuckAtEnd_ = 0;
     return;
   }
   stuck_ += kIntervalSeconds;
   const double after = after_;
   if (after > 0 && stuck_ >= after) reportHang();
+  giveUpLate();
+}
+
+void HangWatch::giveUpLate() {
+  const double limit = giveUp_;
+  if (limit <= 0 || !kernel().stopRequested()) return;
+  stuckAtEnd_ += kIntervalSeconds;
+  if (stuckAtEnd_ < limit) return;
+  kernel().log().error(
+      "It was asked to end {:.1f} s ago and still stands still: it ends without the end of this cycle.", stuckAtEnd_);
+  // As a second signal does.
+  std::signal(SIGTERM, SIG_DFL);
+  ::kill(::getpid(), SIGTERM);
 }
 
 /// Logs a hang once, and once more when a stop is requested meanwhile.

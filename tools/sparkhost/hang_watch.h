@@ -15,8 +15,8 @@
 namespace sparkhost {
 
 /// A thread that checks four times a second whether the simulation thread makes progress. If one call of a node's code
-/// takes longer than `after`, it logs once in which call, and again when the simulation continues. Its cost in the step
-/// is one counter.
+/// takes longer than `after`, it logs once in which call, and again when the simulation continues. A call that goes on
+/// for `giveUp` after the host was asked to end is ended with the process. Its cost in the step is one counter.
 class HangWatch : public spark::Node {
   SPARK_CLASS(HangWatch, spark::Node)
  public:
@@ -32,6 +32,8 @@ class HangWatch : public spark::Node {
  private:
   using Clock = std::chrono::steady_clock;
   double after() const { return after_; }
+  double giveUp() const { return giveUp_; }
+  void setGiveUp(double seconds) { giveUp_ = seconds; }
   void setAfter(double seconds) { after_ = seconds; }
   void start();
   void stop();
@@ -39,8 +41,10 @@ class HangWatch : public spark::Node {
   void check();
   void reportHang();
   void reportEnd();
+  /// Ends the process if it was asked to end, and a call that hangs keeps it from that.
+  void giveUpLate();
 
-  std::atomic<double> after_ = 2;
+  std::atomic<double> after_ = 2, giveUp_ = 10;
   std::optional<Watchdog> watchdog_;
   std::thread thread_;
   std::mutex mutex_;
@@ -49,6 +53,7 @@ class HangWatch : public spark::Node {
   // Used by its thread, and after stop() by the simulation thread.
   Clock::time_point lastProgress_{};
   double stuck_ = 0;           ///< s without progress, as counted by check()
+  double stuckAtEnd_ = 0;      ///< the part of it since a request to stop [s]
   bool reported_ = false;      ///< the hang was logged
   bool stopReported_ = false;  ///< the hang was logged again after a request to stop
 };
