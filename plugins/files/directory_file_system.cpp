@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 #include <sys/stat.h>
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 
 #include "file_server.h"
@@ -70,7 +72,8 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
   outputs::keep(file->string());
   std::ifstream in(*file, std::ios::binary);
   std::string content(size, '\0');
-  if (!in || !in.read(content.data(), static_cast<std::streamsize>(size)))
+  if (!in) throw Error(fmt::format("cannot open '{}': {}", file->string(), std::strerror(errno)));
+  if (!in.read(content.data(), static_cast<std::streamsize>(size)))
     throw Error(fmt::format("cannot read '{}'", file->string()));
   return content;
 }

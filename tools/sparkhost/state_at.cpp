@@ -9,29 +9,14 @@
 #include "spark/error.h"
 #include "spark/output_file.h"
 #include "tree_values.h"
+#include "until.h"
 
 namespace sparkhost {
 
 using namespace spark;
 
 namespace {
-constexpr double kTolerance = 1e-6;  // s: time is a sum of steps
-
-/// Stops a run before the cycle that would end after a time.
-class Until : public Node {
-  SPARK_CLASS(Until, Node)
- public:
-  static void describe(Description<Until>& d) {
-    d.doc("Stops the simulation at a time.");
-    d.on<&Until::look>(phase::kPublish);
-  }
-  double time = HUGE_VAL;  ///< s
-
- private:
-  void look(const Event& event) {
-    if (event.time + event.step > time + kTolerance) kernel().root().require<ISimulation>(ISimulation::kPath).stop();
-  }
-};
+constexpr double kTolerance = Until::kTolerance;
 
 bool hasInputs(const RecordedRun& run) { return run.recording().channelOf("/spark/inputs") != 0; }
 }  // namespace
@@ -58,8 +43,7 @@ std::shared_ptr<const ForkState> stateAt(const RecordedRun& run, const Options& 
   const auto now = [&root] { return numberAt(root, kSimulation, "time"); };
   const double step = numberAt(root, kSimulation, "step");
   if (now() + step <= own.at + kTolerance) {
-    host.kernel().registerClass<Until>();
-    host.kernel().create<Until>("Until", "/sys/host/until").time = own.at;
+    Until::add(host.kernel(), own.at, Until::Last::notLater);
     host.run();
     if (host.kernel().stopRequested()) throw Error("interrupted before the state from which the run would go on");
   }

@@ -14,6 +14,7 @@
 #include "spark/describe.h"
 #include "spark/error.h"
 #include "spark/output_file.h"
+#include "until.h"
 
 namespace sparkreplay {
 
@@ -125,22 +126,6 @@ class Table : public Node {
   std::set<std::string> found_;  ///< columns whose property was there
 };
 
-/// Ends the run when the part is over. A setting such as the loop's duration would make it another run.
-class Until : public Node {
-  SPARK_CLASS(Until, Node)
- public:
-  static void describe(Description<Until>& d) {
-    d.doc("Stops the simulation at a time.");
-    d.on<&Until::look>(phase::kPublish);
-  }
-  double to = HUGE_VAL;  ///< s
-
- private:
-  void look(const Event& event) {
-    if (event.time >= to - 1e-6) kernel().root().require<ISimulation>(ISimulation::kPath).stop();
-  }
-};
-
 /// Simulates the recorded part again; `prepare`: is called before it runs, `done` after it.
 template <class Prepare, class Done>
 std::int64_t simulate(const Export& what, Prepare prepare, Done done) {
@@ -158,8 +143,7 @@ std::int64_t simulate(const Export& what, Prepare prepare, Done done) {
   sparkhost::watchSignals(host.kernel());
   Leaf& writer = prepare(host.kernel());
   if (std::isfinite(what.to)) {
-    host.kernel().registerClass<Until>();
-    host.kernel().create<Until>("Until", "/sys/host/until").to = what.to;
+    sparkhost::Until::add(host.kernel(), what.to, sparkhost::Until::Last::notEarlier);
   }
   host.run();
   if (host.kernel().stopRequested()) throw Error(fmt::format("interrupted: {} is not complete", what.out));

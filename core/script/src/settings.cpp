@@ -152,6 +152,10 @@ std::string Settings::hint(const Override& o) const {
       for (const auto& g : groups->children())
         for (const std::string& n : memberNames(*g)) names.push_back(fmt::format("{}.{}", g->name(), n));
     std::erase(names, o.key);
+    // A property of a server is set by its path.
+    if (const auto* servers = kernel_.root().find<Node>("/sys/server"))
+      for (const auto& s : servers->children())
+        if (s->classObject()->property(o.key)) return fmt::format(" Did you mean '{}.{}'?", s->path(), o.key);
     return didYouMean(o.key, names);
   }
   // The same member of other nodes.
