@@ -155,9 +155,12 @@ function spades(t)
   local logs     = option{ name = "agentLogs", default = "", doc = "Folder for what agents print; empty: none." }
   local think    = option{ name = "thinkTime", default = "FixedThinkTime",
                            doc = "Think time: FixedThinkTime, or measured: CpuThinkTime, InstructionThinkTime." }
-  local port     = option{ name = "commPort", default = -1, doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
-  local address  = option{ name = "commAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
-  local token    = option{ name = "commToken", default = "", secret = true, doc = "What they must know; empty: nothing." }
+  local port     = option{ name = "commPort", default = -1,
+                           doc = "TCP port for sparkcomm on other machines; 0: a free one, -1: none." }
+  local address  = option{ name = "commAddress", default = "127.0.0.1",
+                           doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
+  local token    = option{ name = "commToken", default = "", secret = true,
+                           doc = "What they must know; empty: nothing." }
   local servers  = option{ name = "commServers", default = 0, doc = "How many of them the start waits for." }
   languages()
   plugin "gamecontrol"
@@ -193,7 +196,8 @@ function monitors(t)
                           doc = "File of a Unix socket for monitors, in place of the TCP port; empty: TCP." }
   local port = listeningPort("monitors", t.port or 3200, "/sys/server/monitor", framing, socket)
   port.maxConnections = 128
-  port.makeRoomAfter = 10                      -- clients that never read are allowed, but 128 of them do not block others
+  -- Clients that never read are allowed, but 128 of them do not block others.
+  port.makeRoomAfter = 10
   return server
 end
 
@@ -210,9 +214,12 @@ end
 function web()
   local wanted = option{ name = "web", default = true, doc = "The match can be watched in a browser." }
   local port   = option{ name = "webPort", default = 3280, doc = "Its port; 0: a free one." }
-  local address = option{ name = "webAddress", default = "127.0.0.1", doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
-  local token  = option{ name = "webToken", default = "", secret = true, doc = "What makes a viewer a referee, at least 16 characters; empty: made up and printed." }
-  local logs   = option{ name = "webLogs", default = "", doc = "Folder of recorded games that viewers may play; empty: none." }
+  local address = option{ name = "webAddress", default = "127.0.0.1",
+                          doc = "Where it listens; 0.0.0.0: for the whole network, unencrypted." }
+  local token  = option{ name = "webToken", default = "", secret = true,
+                         doc = "What makes a viewer a referee, at least 16 characters; empty: made up and printed." }
+  local logs   = option{ name = "webLogs", default = "",
+                         doc = "Folder of recorded games that viewers may play; empty: none." }
   if host.alone or not wanted then return end
   plugin "monitor-web"
   plugin "monitor"
@@ -286,8 +293,10 @@ end
 --- forwardDrawings=host:port forwards all packets to another one. Simulations of a batch keep no drawings, but robots
 --- may have the effector.
 function drawing()
-  local port = option{ name = "drawings", default = -1, doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
-  local forward = option{ name = "forwardDrawings", default = "", doc = "host:port of another viewer that gets agents' drawings too." }
+  local port = option{ name = "drawings", default = -1,
+                       doc = "UDP port at which agents' drawings come in, e.g. 32769; -1: none, 0: any free one." }
+  local forward = option{ name = "forwardDrawings", default = "",
+                          doc = "host:port of another viewer that gets agents' drawings too." }
   plugin "drawing"
   if host.alone then return end
   local server = new("DrawingServer", "/sys/server/drawing")

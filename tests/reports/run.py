@@ -27,11 +27,16 @@ class Case:
         self.row, self.input, self.right, self.exit, self.slow = 0, "", "", 0, False
         self.engines, self.arguments, self.expected, self.never = [None], ["--duration", "2"], [], []
         mark = "--" if file.suffix == ".lua" else "#"
+        entries = []
         for line in file.read_text().splitlines():
             if not line.startswith(mark):
                 break
-            if found := re.match(re.escape(mark) + r"!?\s*(\w+): (.*)", line):
-                self.take(*found.groups())
+            if found := re.match(re.escape(mark) + r" (\w+): (.*)", line):
+                entries.append(list(found.groups()))
+            elif entries and line.startswith(mark + "   "):  # goes on with the line before
+                entries[-1][1] += " " + line[len(mark):].strip()
+        for key, value in entries:
+            self.take(key, value)
         if not (self.row and self.input and self.right):
             raise ValueError(f"{file}: expected the lines row, input and right at its start")
 

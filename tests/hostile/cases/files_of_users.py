@@ -22,12 +22,22 @@ with Folder() as folder:
     (folder / "c.mcap.part").symlink_to("victim")
     for name in ("b.mcap", "c.mcap", "now.mcap"):
         done = running.ctl("snapshot", folder / name)
-        judge(f"the snapshot {name} is written", done.returncode == 0 and (folder / name).stat().st_size > 100, done.stderr)
-    judge("files beside it are kept", (folder / "victim").read_text() == "mine" and (folder / "b.mcap.part").read_text() == "mine" and
-          (folder / "c.mcap.part").is_symlink())
+        judge(
+            f"the snapshot {name} is written",
+            done.returncode == 0 and (folder / name).stat().st_size > 100,
+            done.stderr,
+        )
+    judge(
+        "files beside it are kept",
+        (folder / "victim").read_text() == "mine"
+        and (folder / "b.mcap.part").read_text() == "mine"
+        and (folder / "c.mcap.part").is_symlink(),
+    )
     (folder / "l.mcap").symlink_to("victim")
     done = running.ctl("snapshot", folder / "l.mcap")
-    judge("a link to a file is refused", done.returncode == 1 and (folder / "victim").read_text() == "mine", done.stderr)
+    judge(
+        "a link to a file is refused", done.returncode == 1 and (folder / "victim").read_text() == "mine", done.stderr
+    )
     for name in ("now.mcap.part",):
         done = running.ctl("snapshot", "--force", folder / name)
         judge("a recording that runs is not replaced", done.returncode == 1, done.stderr)
@@ -43,7 +53,11 @@ with Folder() as folder:
         judge(f"--convert arm.urdf {out} is refused", done.returncode == 2 and model.read_text() == text, done.stderr)
     for arguments in (["--record", "world.lua"], ["--hashes", "world.lua"], ["--set", "logFile=world.lua"]):
         done = host("--config", "world.lua", "--duration", "0.2", "--force", *arguments, cwd=folder)
-        judge(f"{arguments} over the config is refused", done.returncode == 2 and (folder / "world.lua").read_text() == WORLD, done.stderr)
+        judge(
+            f"{arguments} over the config is refused",
+            done.returncode == 2 and (folder / "world.lua").read_text() == WORLD,
+            done.stderr,
+        )
     os.mkfifo(folder / "pipe")
     outs = ["pipe"]
     try:
@@ -53,6 +67,14 @@ with Folder() as folder:
         pass
     for out in outs:
         done = run("sparkhost", "--convert", "arm.urdf", out, "--force", cwd=folder)
-        judge(f"--convert to a {out} is refused, and it stays", done.returncode == 2 and not stat.S_ISREG((folder / out).stat().st_mode), done.stderr)
-    left = [p.name for p in folder.iterdir() if ".mcap." in p.name or "draft" in p.name or p.name.startswith(("arm.urdf.", "pipe.", "null."))]
+        judge(
+            f"--convert to a {out} is refused, and it stays",
+            done.returncode == 2 and not stat.S_ISREG((folder / out).stat().st_mode),
+            done.stderr,
+        )
+    left = [
+        p.name
+        for p in folder.iterdir()
+        if ".mcap." in p.name or "draft" in p.name or p.name.startswith(("arm.urdf.", "pipe.", "null."))
+    ]
     judge("no temporary file is left", sorted(left) == ["b.mcap.part", "c.mcap.part", "now.mcap.part"], left)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # row: B3
-# input: a host mounts another one that then sends without end: descriptions of classes, nodes, events, poses and values, moves that are never possible with nodes behind them
+# input: a host mounts another one that then sends without end: descriptions of classes, nodes, events, poses and
+#   values, moves that are never possible with nodes behind them
 # right: the simulation goes on to its end, in little memory
 """Each kind is a host of its own, which answers as a host does before it floods."""
 import socket
@@ -17,12 +18,21 @@ CONFIG = """include "house.lua"
 simulation()
 mount{ "/usr/match", address = "127.0.0.1:%d", token = "0123456789abcdef" }
 """
-BEGIN = message("class", "Node", "A node.", "Leaf", "", "", [], []) + message("add", 1, 0, "a", "Node") + message("add", 2, 1, "b", "Node")
+BEGIN = (
+    message("class", "Node", "A node.", "Leaf", "", "", [], [])
+    + message("add", 1, 0, "a", "Node")
+    + message("add", 2, 1, "b", "Node")
+)
 
 
 def classes():
     for n in range(10**9):
-        yield b"".join(message("class", f"C{n % 50}", f"{n} {i}", "Leaf", "", "", [["p", "number", "m", "x", False, False, 1]] * 20, []) for i in range(50))
+        yield b"".join(
+            message(
+                "class", f"C{n % 50}", f"{n} {i}", "Leaf", "", "", [["p", "number", "m", "x", False, False, 1]] * 20, []
+            )
+            for i in range(50)
+        )
 
 
 def other_classes():
@@ -37,7 +47,10 @@ def nodes():
 
 def comes_and_goes():
     for n in range(10**9):
-        yield b"".join(message("add", 10 + n, 0, "n", "Node") + message("rename", 10 + n, "m") + message("remove", 10 + n) for _ in range(100))
+        yield b"".join(
+            message("add", 10 + n, 0, "n", "Node") + message("rename", 10 + n, "m") + message("remove", 10 + n)
+            for _ in range(100)
+        )
 
 
 def events():
@@ -110,7 +123,10 @@ def main():
                 except (OSError, TypeError):
                     break
             last = h.last_line()
-            judge(h.process.returncode == 0 and last and last["cycles"] == 50, f"{flood.__name__}: {last and last['cycles']} cycles of 50")
+            judge(
+                h.process.returncode == 0 and last and last["cycles"] == 50,
+                f"{flood.__name__}: {last and last['cycles']} cycles of 50",
+            )
             judge(memory < MOST, f"{flood.__name__}: {'less' if memory < MOST else 'more'} than {MOST} MB")
 
 

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
 # row: B2
-# input: 64 connections that say nothing are at the port of communication servers and at that of remote hosts, and come again as soon as they are closed; then one comes that speaks
-# right: it is served
+# input: 64 silent connections at the ports of communication servers and of remote hosts, which come again at once
+# right: one that speaks is served
 """The match has no agents: its port for communication servers waits for one."""
 import selectors
 import socket
 import sys
 import threading
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "lib"))
 from programs import Program, host, judge  # noqa: E402
 import wire  # noqa: E402
 
-DATABASE = '<agentdb><agent_type_external name="one"><timer>fixed 1</timer><exec_line>true</exec_line></agent_type_external></agentdb>'
+DATABASE = """<agentdb><agent_type_external name="one"><timer>fixed 1</timer><exec_line>true</exec_line>
+</agent_type_external></agentdb>"""
 CONFIG = """include "house.lua"
 files() scene() physics()
 spades{ types = "", players = 0 }
@@ -48,8 +48,8 @@ class Silent(threading.Thread):
 
 
 def main():
-    with host("--set", "commPort=0", "--set", "commServers=1", "--set", "remoteAddress=127.0.0.1:0", "--set", "remoteToken=0123456789abcdef",
-              "--rate", "real", config=CONFIG) as h:
+    with host("--set", "commPort=0", "--set", "commServers=1", "--set", "remoteAddress=127.0.0.1:0",
+              "--set", "remoteToken=0123456789abcdef", "--rate", "real", config=CONFIG) as h:
         ports = h.first_line()
         remote = int(h.wait_for(r"mount this one at 127\.0\.0\.1:(\d+)")[1])
         crowds = [Silent(ports["commPort"]), Silent(remote)]
@@ -58,8 +58,11 @@ def main():
         database = Path(h.process.args[2]).parent / "agents.xml"
         database.write_text(DATABASE)
         with Program("sparkcomm", "--port", ports["commPort"], "--database", database, "--patience", "20") as comm:
-            while not (found := "is there" in h.text()) and comm.process.poll() is None:
-                time.sleep(0.02)
+            # If it ends without being served, the host ends too, and with it the waiting.
+            served = threading.Event()
+            threading.Thread(target=lambda: (comm.process.wait(), served.is_set() or h.end()), daemon=True).start()
+            found = h.wait_for("is there")
+            served.set()
             judge(found, "a communication server is " + ("there" if found else "not served"))
             client = wire.connect(remote)
             client.sendall(wire.message("hello", 1, "0123456789abcdef", "guest", "/usr"))

@@ -1,5 +1,6 @@
 -- row: A4
--- input: every property and method of bodies, colliders, joints, motors, controllers, handlers, the world and the engine gets numbers that no engine can compute with
+-- input: every property and method of bodies, colliders, joints, motors, controllers, handlers, the world and the
+--   engine gets numbers that no engine can compute with
 -- right: each is refused or survived: all bodies stay where numbers are, and the host lives
 -- engines: all
 -- args: --duration 1e6 --log-level error
@@ -42,8 +43,10 @@ local SHAPES = {
   PlaneCollider = function(s) s:setParams{ 0, 0, 1, -1 } end,
 }
 -- Classes of the engine's plugin without a form of their own.
-local WITHOUT = { "ConcaveCollider", "ConeCollider", "CompoundCollider", "EmptyCollider", "Generic6DOFJoint", "ConeTwistJoint" }
-local JOINTS = { "HingeJoint", "UniversalJoint", "Hinge2Joint", "BallJoint", "SliderJoint", "FixedJoint", "AngularMotor" }
+local WITHOUT = { "ConcaveCollider", "ConeCollider", "CompoundCollider", "EmptyCollider",
+                  "Generic6DOFJoint", "ConeTwistJoint" }
+local JOINTS = { "HingeJoint", "UniversalJoint", "Hinge2Joint", "BallJoint", "SliderJoint", "FixedJoint",
+                 "AngularMotor" }
 local CONTROLLERS = { "DragController", "VelocityController", "FPSController", "Battery" }
 
 --- name, and a function that makes it below a node; returns the nodes that are tried.
@@ -111,7 +114,8 @@ for _, class in ipairs(get("/classes"):children()) do
     end)
   end
 end
-for _, path in ipairs{ "/usr/scene/world", "/sys/server/physics", "/sys/server/physics/engine", "/sys/server/physics/collision" } do
+for _, path in ipairs{ "/usr/scene/world", "/sys/server/physics", "/sys/server/physics/engine",
+                       "/sys/server/physics/collision" } do
   specimen(path, function(at)
     bodyAt(at, "one", { 0, 0, 0.2 })
     return { get(path) }
@@ -128,9 +132,12 @@ local function lists(v) return { { v, v, v }, { v, 1, 1 }, { 1, v, 1 }, { 0, 0, 
 local function inType(type, v)
   if type == "vec3" then return lists(v) end
   if type == "number" then return { v } end
-  if type == "integer" then return { math.tointeger(v) or (v > 0 and math.maxinteger or v < 0 and math.mininteger or 0) } end
+  if type == "integer" then
+    return { math.tointeger(v) or (v > 0 and math.maxinteger or v < 0 and math.mininteger or 0) }
+  end
   if type == "list of number" or type == "numbers" then
-    return { { v, v, v, v, v, v }, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, v, v, v, 1 }, { v, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 },
+    return { { v, v, v, v, v, v }, { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, v, v, v, 1 },
+             { v, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 },
              { v, v }, { v, v, v, v }, { 0, 0, 1, v }, { v, 1, 0, 0, 0, 1, 0, 0, 1 }, { v } }
   end
 end
@@ -187,7 +194,9 @@ do
       local class = get("/classes/" .. node.class)
       local function try(what, ...)
         local label = s.name .. ": " .. node.class .. "." .. what
-        if label:find(only, 1, true) then trials[#trials + 1] = { specimen = s, node = number, label = label, arguments = { ... } } end
+        if label:find(only, 1, true) then
+          trials[#trials + 1] = { specimen = s, node = number, label = label, arguments = { ... } }
+        end
       end
       for _, v in ipairs(VALUES) do
         for _, p in ipairs(class:properties()) do
@@ -216,7 +225,8 @@ end
 --- What no trial has would be forgotten.
 for _, name in ipairs(get("/plugins/physics").classes) do
   local class, tried = get("/classes/" .. name), false
-  local sound = class.abstract or not (class:isA("Collider") or class:isA("Joint") or class:isA("BodyController") or class:isA("Body"))
+  local sound = class.abstract or not (class:isA("Collider") or class:isA("Joint") or class:isA("BodyController") or
+                                       class:isA("Body"))
   for _, s in ipairs(specimens) do tried = tried or s.name == name end
   for _, without in ipairs(WITHOUT) do tried = tried or without == name end
   if not (sound or tried or only ~= "" ) then log.error("wrong: " .. name .. " is not tried") end
@@ -293,7 +303,8 @@ on("rule", function()
     finish()
   end
   do
-    log.error(string.format("%s: trials: %d, %d of them were refused", #trials > 1 and wrong == 0 and "right" or "wrong", #trials, refused))
+    log.error(string.format("%s: trials: %d, %d of them were refused",
+                            #trials > 1 and wrong == 0 and "right" or "wrong", #trials, refused))
     get("/sys/server/simulation"):stop()
   end
 end)

@@ -1,5 +1,6 @@
 -- row: A4
--- input: meshes with a vertex that no triangle has, with triangles of no area, twice, inside out, in one plane, huge and tiny, under and above falling balls
+-- input: meshes with a vertex that no triangle has, with triangles of no area, twice, inside out, in one plane, huge
+--   and tiny, under and above falling balls
 -- right: each is a collider or refused, and the balls stay where numbers are
 -- engines: all
 -- args: --duration 1e6 --log-level error
@@ -88,7 +89,8 @@ on("rule", function()
       for i = 1, 3 do
         if not (math.abs(p[i]) < 100) then
           wrong = wrong + 1
-          log.error(string.format("wrong: %s, kind %d: a body is at %g %g %g", MESHES[(current - 1) // 4 + 1][1], (current - 1) % 4, p[1], p[2], p[3]))
+          log.error(string.format("wrong: %s, kind %d: a body is at %g %g %g",
+                                  MESHES[(current - 1) // 4 + 1][1], (current - 1) % 4, p[1], p[2], p[3]))
         end
       end
     end

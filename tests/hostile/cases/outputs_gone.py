@@ -11,11 +11,16 @@ from programs import *  # noqa: E402,F403
 import os
 
 with Folder() as folder:
-    (folder / "talks.lua").write_text(WORLD + "on('rule', function(_, event) if event.cycle % 5 == 0 then log.warning('cycle ' .. event.cycle) end end)\n")
+    (folder / "talks.lua").write_text(
+        WORLD
+        + "on('rule', function(_, event) if event.cycle % 5 == 0 then log.warning('cycle ' .. event.cycle) end end)\n"
+    )
 
     def gone(*arguments, first=False, program="sparkhost"):
         read, write = os.pipe()
-        process = subprocess.Popen([str(a) for a in (BIN / program, *arguments)], stdout=write, stderr=write, cwd=folder)
+        process = subprocess.Popen(
+            [str(a) for a in (BIN / program, *arguments)], stdout=write, stderr=write, cwd=folder
+        )
         os.close(write)
         if first:
             os.read(read, 1)
@@ -34,7 +39,14 @@ with Folder() as folder:
     judge("a batch ends with its table", code >= 0 and len((folder / "t.csv").read_text().splitlines()) == 3, code)
     code = gone("nothing.mcap", program="sparkreplay")
     judge("sparkreplay ends with its code", code == 2, code)
-    process = subprocess.Popen([BIN / "sparkhost", "--config", "talks.lua", "--rate", "max", "--duration", "5", "--hashes", "h3"], cwd=folder,
-                               preexec_fn=lambda: (os.close(1), os.close(2)))
+    process = subprocess.Popen(
+        [BIN / "sparkhost", "--config", "talks.lua", "--rate", "max", "--duration", "5", "--hashes", "h3"],
+        cwd=folder,
+        preexec_fn=lambda: (os.close(1), os.close(2)),
+    )
     code = process.wait(timeout=120)
-    judge("both closed: an exit code and the whole run", code >= 0 and len((folder / "h3").read_text().splitlines()) == 250, code)
+    judge(
+        "both closed: an exit code and the whole run",
+        code >= 0 and len((folder / "h3").read_text().splitlines()) == 250,
+        code,
+    )

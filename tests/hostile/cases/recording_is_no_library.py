@@ -24,11 +24,23 @@ with Folder() as folder:
     before = json.loads(mcap.about(records)["arguments"])
     for where in ("../files", "../scenes", "files", "disk", folder / "disk", "."):
         shutil.copy(evil, folder / "evil.so")
-        mcap.write(folder / "b.mcap", mcap.forged(records, before + ["--plugin-path", str(where)], attachments=[("file:evil.so", evil.read_bytes())]))
-        for command in (["sparkreplay", "b.mcap", "--verify"], ["sparkreplay", "b.mcap", "--export", "t.csv", "--property", "/usr/scene/arm.localPos"],
-                        ["sparkhost", "--from", "b.mcap", "--rate", "max", "--duration", "1.5"]):
+        mcap.write(
+            folder / "b.mcap",
+            mcap.forged(
+                records, before + ["--plugin-path", str(where)], attachments=[("file:evil.so", evil.read_bytes())]
+            ),
+        )
+        for command in (
+            ["sparkreplay", "b.mcap", "--verify"],
+            ["sparkreplay", "b.mcap", "--export", "t.csv", "--property", "/usr/scene/arm.localPos"],
+            ["sparkhost", "--from", "b.mcap", "--rate", "max", "--duration", "1.5"],
+        ):
             done = run(*command, cwd=folder)
-            judge(f"--plugin-path {where}: {command[0]} {command[2]} loads none", not mark.exists() and done.returncode in (0, 2), done.stderr)
+            judge(
+                f"--plugin-path {where}: {command[0]} {command[2]} loads none",
+                not mark.exists() and done.returncode in (0, 2),
+                done.stderr,
+            )
             judge("and says so", "--plugin-path" in done.stderr, done.stderr)
             mark.unlink(missing_ok=True)
             (folder / "t.csv").unlink(missing_ok=True)

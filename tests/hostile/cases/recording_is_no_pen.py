@@ -26,20 +26,47 @@ with Folder() as folder:
             "logFile": (before + ["--set", f"logFile={file}"], text),
             "a MonitorLog": script(f'new("MonitorLog", "/sys/server/monitor/log").file = "{file}"'),
             "a FileLogSink": script(f'get("/sys/server/log"):new("FileLogSink", "mine").file = "{file}"'),
-            "a setting of a FileLogSink": (before + ["--set", f"/sys/server/log/mine.file={file}"], text + 'get("/sys/server/log"):new("FileLogSink", "mine")\n'),
-            "a snapshot": script(f'on("rule", function() pcall(function() get("/sys/host/snapshots"):save("{file}") end) end)'),
-            "a second recording": script(f'on("rule", function() pcall(function() get("/sys/host/tape"):record("{file}", {{}}) end) end)'),
+            "a setting of a FileLogSink": (
+                before + ["--set", f"/sys/server/log/mine.file={file}"],
+                text + 'get("/sys/server/log"):new("FileLogSink", "mine")\n',
+            ),
+            "a snapshot": script(
+                f'on("rule", function() pcall(function() get("/sys/host/snapshots"):save("{file}") end) end)'
+            ),
+            "a second recording": script(
+                f'on("rule", function() pcall(function() get("/sys/host/tape"):record("{file}", {{}}) end) end)'
+            ),
         }
         for what, (arguments, config) in ways.items():
             mcap.write(folder / "b.mcap", mcap.forged(records, arguments, {"watched.lua": config}))
-            for command in (["sparkreplay", "b.mcap", "--verify"], ["sparkhost", "--from", "b.mcap", "--rate", "max", "--duration", "1.5"],
-                            ["sparkhost", "--from", "b.mcap", "--rate", "max", "--duration", "1.5", "--record", "c.mcap", "--force"]):
+            for command in (
+                ["sparkreplay", "b.mcap", "--verify"],
+                ["sparkhost", "--from", "b.mcap", "--rate", "max", "--duration", "1.5"],
+                [
+                    "sparkhost",
+                    "--from",
+                    "b.mcap",
+                    "--rate",
+                    "max",
+                    "--duration",
+                    "1.5",
+                    "--record",
+                    "c.mcap",
+                    "--force",
+                ],
+            ):
                 if old:
                     file.write_text("mine")
                 done = run(*command, cwd=folder)
                 judge(f"{what}, a file that is {'there' if old else 'new'}: {' '.join(command[:2])}",
                       (file.read_text() == "mine" if old else not file.exists()) and done.returncode >= 0, done.stderr)
                 file.unlink(missing_ok=True)
-    mcap.write(folder / "b.mcap", mcap.forged(records, before + ["--set", f"logFile={folder / 'new'}"], {"watched.lua": text}))
+    mcap.write(
+        folder / "b.mcap", mcap.forged(records, before + ["--set", f"logFile={folder / 'new'}"], {"watched.lua": text})
+    )
     done = host("--from", "b.mcap", "--duration", "1.5", "--set", "logFile=own.txt", "--log-level", "info", cwd=folder)
-    judge("a log that the user names is written, in the user's folder", done.returncode == 0 and (folder / "own.txt").exists(), done.stderr)
+    judge(
+        "a log that the user names is written, in the user's folder",
+        done.returncode == 0 and (folder / "own.txt").exists(),
+        done.stderr,
+    )

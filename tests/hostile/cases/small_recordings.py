@@ -31,7 +31,11 @@ with Folder() as folder:
 
     def index(op, place):
         at, length = place
-        return (13, struct.pack("<QQ", at, length) + mcap.text("x")) if op == mcap.METADATA else (10, struct.pack("<QQQQQ", at, length, 0, 0, 0) + mcap.text("x") + mcap.text("y"))
+        return (
+            (13, struct.pack("<QQ", at, length) + mcap.text("x"))
+            if op == mcap.METADATA
+            else (10, struct.pack("<QQQQQ", at, length, 0, 0, 0) + mcap.text("x") + mcap.text("y"))
+        )
 
     big = mcap.metadata("big", {"x": "y" * (256 << 10)})
     all_records = records + [big]
@@ -44,10 +48,23 @@ with Folder() as folder:
     zeros = mcap.chunk(bytes(200 << 20))
     all_records = records + [zeros]
     place = mcap.offsets(all_records)[-1]
-    entry = (8, struct.pack("<QQQQ", 0, 10**9, *place) + struct.pack("<IQ", 0, 0) + mcap.text("zstd") + struct.pack("<QQ", 0, 0))
+    entry = (
+        8,
+        struct.pack("<QQQQ", 0, 10**9, *place)
+        + struct.pack("<IQ", 0, 0)
+        + mcap.text("zstd")
+        + struct.pack("<QQ", 0, 0),
+    )
     mcap.write_with_summary(file, all_records, [entry] * 300)
     tried("one chunk of 200 MB, listed 300 times", [], ["--verify"], ["--export", "p.mcap"])
-    bomb = [mcap.chunk(mcap.record(4, struct.pack("<HH", 100 + i, 0) + mcap.text("t" * (200 << 20)) + mcap.text("json") + mcap.text(""))) for i in range(6)]
+    bomb = [
+        mcap.chunk(
+            mcap.record(
+                4, struct.pack("<HH", 100 + i, 0) + mcap.text("t" * (200 << 20)) + mcap.text("json") + mcap.text("")
+            )
+        )
+        for i in range(6)
+    ]
     mcap.write(file, bomb + records[1:])
     tried("six chunks with channels of 200 MB", [], ["--verify"], ["--export", "q.mcap"])
     file.write_bytes((folder / "a.mcap").read_bytes())

@@ -31,7 +31,9 @@ with Folder() as folder:
     reader = threading.Thread(target=read)
     reader.start()
     opened.wait()
-    running = Live("--config", "world.lua", "--record", "pipe", "--rate", "max", "--set", "/sys/host/tape.every=0.1", cwd=folder)
+    running = Live(
+        "--config", "world.lua", "--record", "pipe", "--rate", "max", "--set", "/sys/host/tape.every=0.1", cwd=folder
+    )
     started.set()
     reader.join()
     cycles = []

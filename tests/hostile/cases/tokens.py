@@ -9,7 +9,12 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "../reports/lib"
 import mcap  # noqa: E402
 from programs import *  # noqa: E402,F403
 
-SECRETS = {"webToken": "web-0123456789abcdef", "remoteToken": "rem-0123456789abcdef", "commToken": "com-0123456789abcdef", "mine": "my-0123456789abcdef"}
+SECRETS = {
+    "webToken": "web-0123456789abcdef",
+    "remoteToken": "rem-0123456789abcdef",
+    "commToken": "com-0123456789abcdef",
+    "mine": "my-0123456789abcdef",
+}
 CONFIG = """
 include "house.lua"
 files() scene() physics() simulation()
@@ -25,19 +30,45 @@ with Folder() as folder:
     sets = [word for key, value in SECRETS.items() for word in ("--set", f"{key}={value}")]
     sets[1:2] = []
     sets[0] = f"--set=webToken={SECRETS['webToken']}"
-    running = Live("--config", "served.lua", "--record", "a.mcap", "--web-port", "0", "--set", "remoteAddress=127.0.0.1:0", *sets, cwd=folder)
+    running = Live(
+        "--config",
+        "served.lua",
+        "--record",
+        "a.mcap",
+        "--web-port",
+        "0",
+        "--set",
+        "remoteAddress=127.0.0.1:0",
+        *sets,
+        cwd=folder,
+    )
     later = "called-0123456789abcdef"
     done = running.ctl("call", "/usr/second.setToken", later)
     judge("a token may be set while it runs", done.returncode == 0, done.stderr)
-    seen = "".join(running.ctl("get", path).stdout for path in ("/sys/host/snapshots", "/sys/host/tape", "/sys/server/web", "/sys/server/spades",
-                                                               "/sys/server/remote", "/sys/server/script", "/usr/second", "/sys/server/log"))
+    seen = "".join(
+        running.ctl("get", path).stdout
+        for path in (
+            "/sys/host/snapshots",
+            "/sys/host/tape",
+            "/sys/server/web",
+            "/sys/server/spades",
+            "/sys/server/remote",
+            "/sys/server/script",
+            "/usr/second",
+            "/sys/server/log",
+        )
+    )
     running.ctl("snapshot", folder / "s.mcap")
     code, log = running.stop()
     judge("it ended well", code == 0 and "arguments" in seen, log + seen)
     for name, secret in {**SECRETS, "a call": later}.items():
         judge(f"{name} is no property", secret not in seen, seen)
         for file in ("a.mcap", "s.mcap"):
-            judge(f"{name} is not in {file}", secret.encode() not in mcap.unpacked(folder / file) and secret.encode() not in (folder / file).read_bytes())
+            judge(
+                f"{name} is not in {file}",
+                secret.encode() not in mcap.unpacked(folder / file)
+                and secret.encode() not in (folder / file).read_bytes(),
+            )
     code, line, log = verify(folder / "a.mcap")
     judge("the recording verifies", code == 0 and line.get("differs", 1) is None, log)
     on = host("--from", "a.mcap", "--duration", "3", "--web-port", "0", cwd=folder)

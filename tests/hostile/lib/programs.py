@@ -19,7 +19,9 @@ class Program:
         command = [os.environ["SPARKBIN"] + "/" + name, *map(str, arguments)]
         if limit:  # bytes of address space
             command = ["/bin/sh", "-c", f'ulimit -v {limit >> 10}; exec "$0" "$@"', *command]
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
+        self.process = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options
+        )
         self.log = []
         self.changed = threading.Condition()
         self.reader = threading.Thread(target=self.collect, daemon=True)

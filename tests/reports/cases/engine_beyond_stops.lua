@@ -8,7 +8,8 @@ include "../lib/judge.lua"
 include "../lib/light_link.lua"
 local sim = lightWorld(0.005)
 local bodies, hinges = {}, {}
---- A link of `mass` at the end of `place`, with a hinge about `axis` and stops [deg]; returns its end and path below it.
+--- A link of `mass` at the end of `place`, with a hinge about `axis` and stops [deg]; returns its end and path below
+--- it.
 local function link(place, second, mass, reach, inertia, axis, low, high)
   local tip, body = lightLink(place, "link", mass, reach, inertia)
   local hinge = lightHinge(place, "link", second)

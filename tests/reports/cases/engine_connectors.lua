@@ -1,5 +1,6 @@
 -- row: 4
--- input: two links of 10 g on three damped, sprung and stopped hinges each, with bodies of 1e-9 kg m^2 between, fall down
+-- input: two links of 10 g on three damped, sprung and stopped hinges each, with bodies of 1e-9 kg m^2 between, fall
+--   down
 -- right: no hinge is beyond its stops, nothing is faster than its fall allows
 -- engines: all
 -- args: --duration 1.1

@@ -20,7 +20,9 @@ local function noise()
 end
 local points = {}
 local function add(radius, angle, z)
-  for _, v in ipairs{ radius * math.cos(angle), radius * math.sin(angle), z + 4e-7 * noise() } do points[#points + 1] = v end
+  for _, v in ipairs{ radius * math.cos(angle), radius * math.sin(angle), z + 4e-7 * noise() } do
+    points[#points + 1] = v
+  end
 end
 for _, z in ipairs{ -0.03, 0.03 } do
   for i = 1, 24 do add(0.1 + 1e-7 * noise(), i * math.pi / 12, z) end

@@ -1,5 +1,6 @@
 -- row: 4
--- input: a link of 2e-6 kg m^2 with a rotor of 0.01 kg m^2 follows a servo of 30 Nm/rad and 0.6 N m s/rad, in steps of 2 ms
+-- input: a link of 2e-6 kg m^2 with a rotor of 0.01 kg m^2 follows a servo of 30 Nm/rad and 0.6 N m s/rad, in steps
+--   of 2 ms
 -- right: it is at its target of 0.5 rad after 1 s, and at half of it when the rotor is
 -- engines: all
 -- args: --duration 1.2

@@ -1,5 +1,6 @@
 -- row: 4
--- input: a plunger of 5 g in a tube of 10 g, with a spring of 20,000 N/m and a damping of 50 N s/m, in steps of 5 ms; the tube turns freely
+-- input: a plunger of 5 g in a tube of 10 g, with a spring of 20,000 N/m and a damping of 50 N s/m, in steps of 5 ms;
+--   the tube turns freely
 -- right: the plunger stays in the middle, and the tube turns on
 -- engines: all
 -- args: --duration 0.6

@@ -10,14 +10,37 @@ from pathlib import Path
 
 LUA = Path(__file__).resolve().parents[3] / "lua"
 # Parts of configs, and those that need a file, another host or a helper.
-OTHERS = {"camera", "convert", "course", "house", "listings", "logplayer", "materials", "naotypes", "referee", "robots", "shot_clock", "soccer-house"}
+OTHERS = {
+    "camera",
+    "convert",
+    "course",
+    "house",
+    "listings",
+    "logplayer",
+    "materials",
+    "naotypes",
+    "referee",
+    "robots",
+    "shot_clock",
+    "soccer-house",
+}
 
 
 def start(config):
     """The finished host, with free ports for all that the config has a port for."""
     ports = ["agent", "monitor", "web"]
     while True:
-        command = [Path(os.environ["SPARKBIN"]) / "sparkhost", "--config", config, "--rate", "max", "--duration", "0.1", "--log-level", "error"]
+        command = [
+            Path(os.environ["SPARKBIN"]) / "sparkhost",
+            "--config",
+            config,
+            "--rate",
+            "max",
+            "--duration",
+            "0.1",
+            "--log-level",
+            "error",
+        ]
         words = [word for name in ports for word in (f"--{name}-port", "0")]
         done = subprocess.run([*map(str, command), *words], capture_output=True, text=True, errors="replace")
         refused = [name for name in ports if f"sparkhost: --{name}-port 0:" in done.stderr]

@@ -1,5 +1,6 @@
 -- row: 4
--- input: a chain of four links of 10 g from a wall, held by springs of 40 Nm/rad and servos of 60 Nm/rad and 0.3 N m s/rad, in steps of 5 ms
+-- input: a chain of four links of 10 g from a wall, held by springs of 40 Nm/rad and servos of 60 Nm/rad and 0.3 N m
+--   s/rad, in steps of 5 ms
 -- right: it bends by less than a hundredth of a radian
 -- engines: OdeEngine ArticulatedEngine BulletEngine
 -- args: --duration 1.2

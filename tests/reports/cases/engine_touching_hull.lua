@@ -20,7 +20,8 @@ place.localPos = { 0.3, 0.3, 0.0625 }
 local body = place:new("RigidBody", "body")
 body:setBoxTotal(1, 0.125, 0.125, 0.125)
 local hull = place:new("ConvexCollider", "hull")
-hull.vertices = { -.0625,-.0625,-.0625, -.0625,-.0625,.0625, -.0625,.0625,-.0625, -.0625,.0625,.0625, .0625,-.0625,-.0625, .0625,-.0625,.0625, .0625,.0625,-.0625, .0625,.0625,.0625 }
+hull.vertices = { -.0625,-.0625,-.0625, -.0625,-.0625,.0625, -.0625,.0625,-.0625, -.0625,.0625,.0625,
+                  .0625,-.0625,-.0625, .0625,-.0625,.0625, .0625,.0625,-.0625, .0625,.0625,.0625 }
 hull:new("ContactJointHandler", "surface").contactBounceMode = false
 on("sense", function(_, event)
   if event.cycle == 200 then near("the brick's height", body.position[3], 0.0625, 0.005) end

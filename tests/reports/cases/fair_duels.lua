@@ -1,5 +1,6 @@
 -- row: 18
--- input: two opponents kick, or touch, the ball in the same cycle, and it leaves the field: one is nearer, or both are as near
+-- input: two opponents kick, or touch, the ball in the same cycle, and it leaves the field: one is nearer, or both
+--   are as near
 -- right: the nearer one touched it last; of two that are as near each about half of the times, whichever joined first
 -- args: --agent-port 0 --monitor-port 0 --web-port 0 --duration 60
 include "soccer-sphere.lua"
@@ -10,7 +11,8 @@ local state = get "/sys/server/gamecontrol/BallStateAspect"
 local game = get "/sys/server/gamecontrol/GameStateAspect"
 local kicks, quiet = false, {}
 for i, team in ipairs { "Red", "Blue" } do
-  player { name = "p" .. i, team = team, unum = 1, think = function() return kicks and "(kick 0 20)" or "(drive 0 0 0)" end }
+  player { name = "p" .. i, team = team, unum = 1,
+           think = function() return kicks and "(kick 0 20)" or "(drive 0 0 0)" end }
 end
 
 --- Removes the noise of a robot's kicks, so that mirrored players do mirrored things.

@@ -19,8 +19,10 @@ for _, sx in ipairs { 1, -1 } do
   for _, sy in ipairs { 1, -1 } do
     -- 20 cm before one line, and by `gap` farther from the other one: it is over both within a cycle
     for _, gap in ipairs { 0.02, 0.15, 0.3 } do
-      shot("touch line first by " .. gap, kickIn, sx * (length + r - 0.2 - gap), sy * (width + r - 0.2), r, sx * 28, sy * 28)
-      shot("goal line first by " .. gap, line, sx * (length + r - 0.2), sy * (width + r - 0.2 - gap), r, sx * 28, sy * 28)
+      shot("touch line first by " .. gap, kickIn,
+           sx * (length + r - 0.2 - gap), sy * (width + r - 0.2), r, sx * 28, sy * 28)
+      shot("goal line first by " .. gap, line,
+           sx * (length + r - 0.2), sy * (width + r - 0.2 - gap), r, sx * 28, sy * 28)
     end
     shot("along the goal line", kickIn, sx * (length + 0.07), sy * (width - 0.3), r, 0, sy * 8)
     shot("along the touch line", line, sx * (length - 0.3), sy * (width + 0.07), r, sx * 8, 0)
@@ -43,7 +45,8 @@ on("prepare", function(self, event)
   if phase == 0 then
     now = now + 1
     if now > #shots then
-      judge(bad == 0 and "all " .. #shots .. " shots" or bad .. " of " .. #shots .. " shots: " .. table.concat(seen, "; "), bad == 0)
+      local what = bad .. " of " .. #shots .. " shots: " .. table.concat(seen, "; ")
+      judge(bad == 0 and "all " .. #shots .. " shots" or what, bad == 0)
       get("/sys/server/simulation"):stop()
       return
     end

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # row: 19
 # input: teams leave one after the other, and the next opponents come to the same server
-# right: a new team takes the side of one that has left, without its goals; while two play a third is refused; a team that comes back to its side goes on
+# right: a new team takes the side of one that has left, without its goals; while two play a third is refused; a team
+#   that comes back to its side goes on
 import sys
 from pathlib import Path
 
@@ -29,7 +30,10 @@ def main():
         blue, side = join(port, "Blue", 1)
         judge(f"the second team leaves, comes back, and plays {side}", side == "right")
         end = host.end()
-        judge(f"the score of {' and '.join(end['teams'])} is {end['score']}", end["teams"] == ["Green", "Blue"] and end["score"] == [0, 1])
+        judge(
+            f"the score of {' and '.join(end['teams'])} is {end['score']}",
+            end["teams"] == ["Green", "Blue"] and end["score"] == [0, 1],
+        )
 
 
 main()

@@ -1,6 +1,8 @@
 -- row: 17
--- input: a match of the demo teams with a change of sides at half time, announced by Soccer.AnnounceSides, or silent as in the installed base
--- right: the team that is due takes its kick-off in the second half as soon as in the first, not after a drop ball 30 s later
+-- input: a match of the demo teams with a change of sides at half time, announced by Soccer.AnnounceSides, or silent
+--   as in the installed base
+-- right: the team that is due takes its kick-off in the second half as soon as in the first, not after a drop ball 30
+--   s later
 -- args: --agent-port 0 --monitor-port 0 --web-port 0 --duration 30
 local silent = option{ name = "silent", default = false, doc = "Agents are not notified, as in the installed base." }
 include "soccer-sphere.lua"

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # row: 19
-# input: a player hangs: it neither reads nor answers, and stays connected; its program is started again, in real time and in lockstep
+# input: a player hangs: it neither reads nor answers, and stays connected; its program is started again, in real time
+#   and in lockstep
 # right: the new connection plays with its number; while the old one still answers, the new one is refused
 import sys
 import threading
@@ -33,7 +34,9 @@ def real_time():
 
 
 def lockstep():
-    with Host("--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.answerWait=0.1") as host:
+    with Host(
+        "--config", "soccer-sphere.lua", "--sync", "--rate", "max", "--set", "/sys/server/gamecontrol.answerWait=0.1"
+    ) as host:
         port = host.ports["agentPort"]
         old, _ = join(port, "Red", 3)
         new, told = join(port, "Red", 3, 50)

@@ -26,10 +26,22 @@ with Folder() as folder:
         done = run(*batch, *arguments, cwd=folder)
         judge(f"{what}: refused", done.returncode == 2 and "would both write" in done.stderr and "{run}" in done.stderr,
               f"{done.returncode} {done.stderr}")
-    judge("nothing was written", not list(folder.glob("*.log")) and not (folder / "t.csv").exists(), list(folder.iterdir()))
+    judge(
+        "nothing was written",
+        not list(folder.glob("*.log")) and not (folder / "t.csv").exists(),
+        list(folder.iterdir()),
+    )
     done = run(*batch, "--runs", "3", "--sweep", "push=1,2", "--set", "log=run{run}.log", cwd=folder)
-    judge("a name for each run", done.returncode == 0 and len(list(folder.glob("run*.log"))) == 6, f"{done.returncode} {done.stderr}")
+    judge(
+        "a name for each run",
+        done.returncode == 0 and len(list(folder.glob("run*.log"))) == 6,
+        f"{done.returncode} {done.stderr}",
+    )
     sizes = {f.stat().st_size for f in folder.glob("run*.log")}
     judge("each log is whole", len(sizes) == 1 and 0 not in sizes, sizes)
     done = run(*batch[:-1], "single.csv", cwd=folder)
-    judge("a batch of one run may write what its config names", done.returncode == 0 and (folder / "all.log").stat().st_size > 0, done.stderr)
+    judge(
+        "a batch of one run may write what its config names",
+        done.returncode == 0 and (folder / "all.log").stat().st_size > 0,
+        done.stderr,
+    )

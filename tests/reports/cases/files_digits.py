@@ -21,7 +21,10 @@ for _, number in ipairs{ 0.1, 1 / 3, -2.5e-7, 123456789.123, 1e300, 0.02 } do
   print((seen == number and "right: " or "wrong: ") .. text)
 end
 """
-SOCCER = 'include "soccer-sphere.lua"\nlocal text = get("/sys/server/gamecontrol/parser"):write{ { "x", 1 / 3 } }\nprint((text == "(x 0.33)" and "right: " or "wrong: ") .. text)\n'
+SOCCER = """include "soccer-sphere.lua"
+local text = get("/sys/server/gamecontrol/parser"):write{ { "x", 1 / 3 } }
+print((text == "(x 0.33)" and "right: " or "wrong: ") .. text)
+"""
 with Folder() as folder:
     (folder / "agent.lua").write_text(AGENT)
     (folder / "match.lua").write_text(SOCCER)
@@ -29,5 +32,13 @@ with Folder() as folder:
         done = run("sparkhost", "--config", config, "--rate", "max", "--duration", "0.02", "--agent-port", "0",
                    *(["--monitor-port", "0", "--web-port", "0"] if config == "match.lua" else []), cwd=folder)
         judge(f"{config} runs", done.returncode == 0, done.stderr)
-        print("".join(line[line.index(verdict):] + "\n" for line in done.stderr.splitlines() for verdict in ("right: ", "wrong: ") if verdict in line), end="")
+        print(
+            "".join(
+                line[line.index(verdict) :] + "\n"
+                for line in done.stderr.splitlines()
+                for verdict in ("right: ", "wrong: ")
+                if verdict in line
+            ),
+            end="",
+        )
     judge("all numbers were seen", done.returncode == 0)

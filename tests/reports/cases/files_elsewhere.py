@@ -28,7 +28,15 @@ with Folder() as folder:
     def plays(where, cwd):
         code, line, log = verify(home / "r.mcap", cwd=cwd)
         judge(f"{where}: it verifies", code == 0 and line.get("cycles") == 550, f"{line} {log}")
-        table = run("sparkreplay", home / "r.mcap", "--export", folder / "t.csv", "--property", "/usr/scene/arm.localPos", cwd=cwd)
+        table = run(
+            "sparkreplay",
+            home / "r.mcap",
+            "--export",
+            folder / "t.csv",
+            "--property",
+            "/usr/scene/arm.localPos",
+            cwd=cwd,
+        )
         judge(f"{where}: it is exported", table.returncode == 0, table.stderr)
         (folder / "t.csv").unlink(missing_ok=True)
         on = host("--from", home / "r.mcap", "--at", "10.5", cwd=cwd)

@@ -12,12 +12,22 @@ with Folder() as folder:
     running = Live("--config", "world.lua", cwd=folder)
     for value, text in {"-.5": "-0.5", "-1e-5": "-1e-05", "-5": "-5", ".25": "0.25"}.items():
         done = running.ctl("set", "/usr/scene/arm/body.mass", value)
-        good = value[0] != "-" and done.returncode == 0 or value[0] == "-" and "expected" in done.stderr and "--help" not in done.stderr
+        good = (
+            value[0] != "-"
+            and done.returncode == 0
+            or value[0] == "-"
+            and "expected" in done.stderr
+            and "--help" not in done.stderr
+        )
         judge(f"set mass {value} reaches the property", good, done.stdout + done.stderr)
     done = running.ctl("call", "/usr/scene/arm/joint.setHighStopDeg", "0", "-.5")
     judge("call with -.5", done.returncode == 0, done.stderr)
     done = running.ctl("call", "/usr/scene/arm/body.setPosition", "-1", "-2", "-inf")
-    judge("call with -inf is refused by the body, not by the command line", done.returncode in (0, 1) and "--help" not in done.stderr, done.stderr)
+    judge(
+        "call with -inf is refused by the body, not by the command line",
+        done.returncode in (0, 1) and "--help" not in done.stderr,
+        done.stderr,
+    )
     done = running.ctl("set", "--timeout", "5", "/usr/scene/arm/body.mass", "2")
     judge("options still work", done.returncode != 0 or "2" in done.stdout, done.stderr)
     done = running.ctl("call", "/usr/scene/arm/body.setPosition", "-1", "-.25", "-3", "--timeout")

@@ -18,8 +18,12 @@ with Folder() as folder:
         "a log in the recording": ["--set", "logFile=both.mcap", "--force"],
     }.items():
         done = host("--config", "world.lua", "--duration", "0.4", *arguments, cwd=folder)
-        judge(f"{what} is refused", done.returncode == 2 and ("another run is writing it" in done.stderr or "it is there already" in done.stderr),
-              f"{done.returncode} {done.stderr}")
+        judge(
+            f"{what} is refused",
+            done.returncode == 2
+            and ("another run is writing it" in done.stderr or "it is there already" in done.stderr),
+            f"{done.returncode} {done.stderr}",
+        )
     for what, file in {"a snapshot": "both.mcap", "a snapshot by another name": "./x/../both.mcap"}.items():
         (folder / "x").mkdir(exist_ok=True)
         done = first.ctl("snapshot", "--force", str(folder) + "/" + file)

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # row: 25
-# input: a client joins in lockstep without --expect, message by message: (scene ...), (init ...), (he1 ...), (syn); it thinks before each answer; the host is at nice 10 beside two busy loops
+# input: a client joins in lockstep without --expect, message by message: (scene ...), (init ...), (he1 ...), (syn);
+#   it thinks before each answer; the host is at nice 10 beside two busy loops
 # right: each time it gets the same messages in the same cycles
 """The client answers each message with one. Its first (syn) is in the fifth."""
 import json
@@ -14,10 +15,30 @@ import sys
 import time
 from pathlib import Path
 
-OPENING = ["(scene rsg/agent/nao/nao_hetero.rsg 1)", "(init (unum 3) (teamname Walkers))", "(he1 2)", "(he1 -1)(he2 1)", "(lae1 -1)(syn)"]
+OPENING = [
+    "(scene rsg/agent/nao/nao_hetero.rsg 1)",
+    "(init (unum 3) (teamname Walkers))",
+    "(he1 2)",
+    "(he1 -1)(he2 1)",
+    "(lae1 -1)(syn)",
+]
 CYCLES, SESSIONS = 10, 2
 THOUGHT = 0.03  # s of the processor
-HOST = ["--config", "soccer.lua", "--sync", "--rate", "max", "--agent-port", "0", "--monitor-port", "0", "--web-port", "0", "--log-level", "error"]
+HOST = [
+    "--config",
+    "soccer.lua",
+    "--sync",
+    "--rate",
+    "max",
+    "--agent-port",
+    "0",
+    "--monitor-port",
+    "0",
+    "--web-port",
+    "0",
+    "--log-level",
+    "error",
+]
 
 
 def read(client, count):
@@ -58,7 +79,14 @@ def main():
     os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
     programs = []
     try:
-        hosts = [subprocess.Popen(["nice", "-n", "10", Path(os.environ["SPARKBIN"]) / "sparkhost", *HOST], stdout=subprocess.PIPE, text=True) for _ in range(SESSIONS)]
+        hosts = [
+            subprocess.Popen(
+                ["nice", "-n", "10", Path(os.environ["SPARKBIN"]) / "sparkhost", *HOST],
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+            for _ in range(SESSIONS)
+        ]
         programs += hosts
         ports = []
         for host in hosts:
@@ -76,8 +104,9 @@ def main():
             program.wait()
     for number, (steps, percepts) in enumerate(sessions, 1):
         same = percepts == sessions[0][1]
-        print(f"{'right' if same and steps == list(range(CYCLES)) else 'wrong'}: session {number} has cycles {' '.join(map(str, steps))}"
-              + ("" if same else " and other percepts than session 1"))
+        good = same and steps == list(range(CYCLES))
+        seen = f"session {number} has cycles {' '.join(map(str, steps))}"
+        print(f"{'right' if good else 'wrong'}: {seen}" + ("" if same else " and other percepts than session 1"))
 
 
 main()

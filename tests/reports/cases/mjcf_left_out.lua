@@ -1,9 +1,11 @@
 -- row: 8
--- input: a crate with meshes that are missing, flat or unknown, bad sizes, and sensors, actuators, pairs and ties of nothing
+-- input: a crate with meshes that are missing, flat or unknown, bad sizes, and sensors, actuators, pairs and ties of
+--   nothing
 -- right: each is named with its place and left out; the crate loads, rests on its good geom, and its arm has a mass
 -- engines: all
 -- expect: mjcf_left_out.xml:6:5: <mesh> 'torn' is left out: expected 12 to
--- expect: mjcf_left_out.xml:12:7: <geom> 'top' is left out: mjcf_left_out.xml:3:5: cannot read the mesh 'nowhere/lid.stl'
+-- expect: mjcf_left_out.xml:12:7: <geom> 'top' is left out: mjcf_left_out.xml:3:5: cannot read the mesh
+--   'nowhere/lid.stl'
 -- expect: mjcf_left_out.xml:13:7: a <geom> adds no mass to its body: its mesh is flat
 -- expect: mjcf_left_out.xml:13:7: a <geom> is left out: a flat mesh has no convex hull
 -- expect: mjcf_left_out.xml:14:7: <geom> 'spots' is left out: mjcf_left_out.xml:5:5: the mesh has no convex hull

@@ -5,7 +5,8 @@
 -- args: --duration 0.5
 -- expect: mjcf_odd_values.xml:3:3: 'iterations' of <option> is taken without its fraction: expected a whole number
 -- expect: mjcf_odd_values.xml:5:5: a 'quat' of 0 in <body> is taken as no rotation
--- expect: mjcf_odd_values.xml:5:5: the <inertial> of a <body> with moments of inertia that no body can have gets their mean
+-- expect: mjcf_odd_values.xml:5:5: the <inertial> of a <body> with moments of inertia that no body can have gets
+--   their mean
 -- expect: mjcf_odd_values.xml:8:7: 'group' of <geom> is taken without its fraction
 -- expect: mjcf_odd_values.xml:11:7: a ball <joint> that is limited to 0 has no limit
 include "../lib/judge.lua"

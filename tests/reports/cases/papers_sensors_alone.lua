@@ -22,8 +22,12 @@ on("rule", function(self, event)
   judge("it knows its place", gps)
   judge("there is no engine", not get("/sys/server/physics"))
   local made, why = pcall(function() return new("TouchPerceptorHandler", "/usr/scene/watcher/touch") end)
-  judge("what needs physics says so: " .. tostring(why):sub(1, 300), not made and why:find("needs its base class", 1, true))
+  judge("what needs physics says so: " .. tostring(why):sub(1, 300),
+        not made and why:find("needs its base class", 1, true))
 end)
 -- what asks classes of their kind meets those whose bases are not there
-judge("classes answer", get("/classes/GPS"):isA("Perceptor") and get("/classes/TouchPerceptorHandler"):isA("ContactJointHandler") and not get("/classes/RigidBody"))
-judge("a wrong property is the only error", not select(2, pcall(function() return get("/plugins/physics").loaded end)):find("needs its base", 1, true))
+judge("classes answer",
+      get("/classes/GPS"):isA("Perceptor") and get("/classes/TouchPerceptorHandler"):isA("ContactJointHandler") and
+      not get("/classes/RigidBody"))
+judge("a wrong property is the only error",
+      not select(2, pcall(function() return get("/plugins/physics").loaded end)):find("needs its base", 1, true))

@@ -1,5 +1,6 @@
 -- row: 15
--- input: thin things are carried through the cone of a sonar: a post, a rod that lies, a turned board, a small ball, a mesh
+-- input: thin things are carried through the cone of a sonar: a post, a rod that lies, a turned board, a small ball,
+--   a mesh
 -- right: each is heard at every bearing inside, at the distance of its nearest point
 -- args: --duration 3
 include "../lib/judge.lua"

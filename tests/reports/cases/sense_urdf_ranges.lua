@@ -1,5 +1,6 @@
 -- row: 12
--- input: a URDF robot with a scanner of three rays to the right and ahead, noise, a slow rate, an imu with noise, a camera
+-- input: a URDF robot with a scanner of three rays to the right and ahead, noise, a slow rate, an imu with noise, a
+--   camera
 -- right: ranges, resolution, noise, rate and picture as the file says
 -- args: --duration 1
 -- never: is not supported

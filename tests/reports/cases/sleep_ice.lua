@@ -16,4 +16,6 @@ at(4, function()
     surface.contactMu = 0
   end
 end)
-at(4.6, function() judge("the upper crate slid by " .. upper.position[2] - before, upper.position[2] - before > 0.1) end)
+at(4.6, function()
+  judge("the upper crate slid by " .. upper.position[2] - before, upper.position[2] - before > 0.1)
+end)

@@ -1,10 +1,12 @@
 -- row: 8
--- input: a crate with shapes of no size, meshes that are missing or flat, an unknown shape, bad numbers, and parts of nothing
+-- input: a crate with shapes of no size, meshes that are missing or flat, an unknown shape, bad numbers, and parts of
+--   nothing
 -- right: each is named with its place and left out; the crate loads and rests on its good collider
 -- engines: all
 -- expect: crate.urdf:8:23: a <visual> is left out: expected a length above 0 for 'radius' of <sphere>, found '0'
 -- expect: crate.urdf:9:59: there is no material 'tin' with a colour: it is grey
--- expect: crate.urdf:11:26: a <collision> is left out: expected three lengths above 0 for 'size' of <box>, found '0 0 0'
+-- expect: crate.urdf:11:26: a <collision> is left out: expected three lengths above 0 for 'size' of <box>, found '0
+--   0 0'
 -- expect: crate.urdf:12:26: a <collision> is left out: expected a length above 0 for 'length' of <cylinder>, found '-1'
 -- expect: crate.urdf:13:26: a <collision> is left out: cannot read the mesh 'package://nowhere/lid.stl'
 -- expect: a <collision> is left out: a flat mesh has no convex hull, and collides only where it does not move

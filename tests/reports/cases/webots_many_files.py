@@ -16,11 +16,31 @@ with tempfile.TemporaryDirectory() as folder:
     for i in range(COUNT):
         lines.append(f'Solid {{ name "s{i}" children Shape {{ appearance Look{i} {{ }} geometry Box {{ }} }} }}')
     Path(folder, "many.wbt").write_text("\n".join(lines))
-    Path(folder, "many.lua").write_text('include "house.lua"\nfiles() scene() physics() simulation()\nget("/usr/scene"):importScene("many.wbt")\n'
-                                        'print(get("/usr/scene/s2999") and "the last one is there")\n')
-    done = subprocess.run([f"{os.environ['SPARKBIN']}/sparkhost", "--config", f"{folder}/many.lua", "--scene-path", folder,
-                           "--rate", "max", "--duration", "0.02"], capture_output=True, text=True)
+    Path(folder, "many.lua").write_text(
+        'include "house.lua"\nfiles() scene() physics() simulation()\nget("/usr/scene"):importScene("many.wbt")\n'
+        'print(get("/usr/scene/s2999") and "the last one is there")\n'
+    )
+    done = subprocess.run(
+        [
+            f"{os.environ['SPARKBIN']}/sparkhost",
+            "--config",
+            f"{folder}/many.lua",
+            "--scene-path",
+            folder,
+            "--rate",
+            "max",
+            "--duration",
+            "0.02",
+        ],
+        capture_output=True,
+        text=True,
+    )
     log = done.stderr
-    print(f"{'right' if done.returncode == 0 else 'wrong'}: exit code {done.returncode} {log[-300:] if done.returncode else ''}")
-    for text in ("the last one is there", "the appearance Look0 is a PROTO that is not there", "a node 'Look0' is empty"):
+    good = done.returncode == 0
+    print(f"{'right' if good else 'wrong'}: exit code {done.returncode} {'' if good else log[-300:]}")
+    for text in (
+        "the last one is there",
+        "the appearance Look0 is a PROTO that is not there",
+        "a node 'Look0' is empty",
+    ):
         print(f"{'right' if text in log else 'wrong'}: {text}")

@@ -17,8 +17,21 @@ class Host:
 
     def __init__(self, *arguments):
         self.errors = tempfile.TemporaryFile("w+")
-        self.process = subprocess.Popen([Path(os.environ["SPARKBIN"]) / "sparkhost", "--agent-port", "0", "--monitor-port", "0", "--web-port", "0", *arguments],
-                                        stdout=subprocess.PIPE, stderr=self.errors, text=True)
+        self.process = subprocess.Popen(
+            [
+                Path(os.environ["SPARKBIN"]) / "sparkhost",
+                "--agent-port",
+                "0",
+                "--monitor-port",
+                "0",
+                "--web-port",
+                "0",
+                *arguments,
+            ],
+            stdout=subprocess.PIPE,
+            stderr=self.errors,
+            text=True,
+        )
         self.ports = json.loads(self.process.stdout.readline())
 
     def __enter__(self):

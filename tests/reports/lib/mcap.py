@@ -52,7 +52,9 @@ def offsets(all_records):
 
 
 def attachment(name, data):
-    return ATTACHMENT, struct.pack("<QQ", 0, 0) + text(name) + text("application/octet-stream") + struct.pack("<Q", len(data)) + data + bytes(4)
+    return ATTACHMENT, struct.pack("<QQ", 0, 0) + text(name) + text("application/octet-stream") + struct.pack(
+        "<Q", len(data)
+    ) + data + bytes(4)
 
 
 def metadata(name, values):
@@ -89,7 +91,11 @@ def forged(all_records, arguments=None, scripts=None, attachments=()):
     front = [attachment(name, data) for name, data in attachments]
     front += [attachment("script:" + name, data.encode()) for name, data in (scripts or {}).items()]
     # The first attachment of a name counts.
-    return [r for r in all_records[:1]] + front + [metadata("spark", values) if op == METADATA else (op, c) for op, c in all_records[1:]]
+    return (
+        [r for r in all_records[:1]]
+        + front
+        + [metadata("spark", values) if op == METADATA else (op, c) for op, c in all_records[1:]]
+    )
 
 
 def zstd(function, data, room):
@@ -97,7 +103,9 @@ def zstd(function, data, room):
     out = ctypes.create_string_buffer(room)
     call = getattr(library, function)
     call.restype = ctypes.c_size_t
-    arguments = (out, ctypes.c_size_t(room), data, ctypes.c_size_t(len(data))) + ((ctypes.c_int(3),) if function == "ZSTD_compress" else ())
+    arguments = (out, ctypes.c_size_t(room), data, ctypes.c_size_t(len(data))) + (
+        (ctypes.c_int(3),) if function == "ZSTD_compress" else ()
+    )
     n = call(*arguments)
     return out.raw[:n]
 
@@ -117,4 +125,7 @@ def unpacked(file):
 def chunk(contents, begin=0, end=0):
     """A chunk of records, compressed."""
     packed = zstd("ZSTD_compress", contents, len(contents) // 100 + (1 << 20))
-    return CHUNK, struct.pack("<QQQI", begin, end, len(contents), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed
+    return (
+        CHUNK,
+        struct.pack("<QQQI", begin, end, len(contents), 0) + text("zstd") + struct.pack("<Q", len(packed)) + packed,
+    )

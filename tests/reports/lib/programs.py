@@ -30,8 +30,15 @@ def judge(what, good, seen=""):
 
 def run(program, *arguments, cwd=None, **more):
     """Runs a program to its end."""
-    return subprocess.run([str(a) for a in (BIN / program, *arguments)], capture_output=True, text=True, errors="replace",
-                          cwd=cwd, timeout=300, **more)
+    return subprocess.run(
+        [str(a) for a in (BIN / program, *arguments)],
+        capture_output=True,
+        text=True,
+        errors="replace",
+        cwd=cwd,
+        timeout=300,
+        **more,
+    )
 
 
 def host(*arguments, cwd=None, **more):
@@ -43,8 +50,15 @@ class Live:
     """A host that runs until stop(). Its first line has come."""
 
     def __init__(self, *arguments, cwd=None, **more):
-        self.process = subprocess.Popen([str(a) for a in (BIN / "sparkhost", "--log-level", "info", *arguments)],
-                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", cwd=cwd, **more)
+        self.process = subprocess.Popen(
+            [str(a) for a in (BIN / "sparkhost", "--log-level", "info", *arguments)],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            errors="replace",
+            cwd=cwd,
+            **more,
+        )
         self.first = json.loads(self.process.stdout.readline())
 
     def ctl(self, *arguments):
