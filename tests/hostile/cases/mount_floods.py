@@ -62,7 +62,13 @@ def events():
 def scenes():
     one = [1.0 if n % 5 == 0 else 0.0 for n in range(16)]
     for n in range(10**9):
-        yield message("scene", n + 1, [[1 + k % 2, one] for k in range(1000)], [[1, [], [["name", f"{n}"]]]] * 100, [[1, "name", f"{n}"]] * 100)
+        yield message(
+            "scene",
+            n + 1,
+            [[1 + k % 2, one] for k in range(1000)],
+            [[1, [], [["name", f"{n}"]]]] * 100,
+            [[1, "name", f"{n}"]] * 100,
+        )
 
 
 def fat_scenes():
@@ -109,7 +115,18 @@ class Evil(threading.Thread):
 
 
 def main():
-    for flood in (classes, other_classes, nodes, comes_and_goes, events, scenes, fat_scenes, stuck, unknown_class, silent_after_half):
+    for flood in (
+        classes,
+        other_classes,
+        nodes,
+        comes_and_goes,
+        events,
+        scenes,
+        fat_scenes,
+        stuck,
+        unknown_class,
+        silent_after_half,
+    ):
         evil = Evil(flood)
         evil.start()
         with host("--rate", "max", "--duration", "1", "--log-level", "warning", config=CONFIG % evil.port) as h:
