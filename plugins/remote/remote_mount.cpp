@@ -236,8 +236,8 @@ List RemoteMount::awaitRecorded(std::uint64_t number, bool patient) {
       throw Error(
           fmt::format("{}: a recording has what the other host sent as files: expected files() in the config", path()));
     ++conversations_;
-    for (Value& message : decode(files->read(conversationName())))
-      if (message.isString()) replayed_.push_back(std::move(message.toString()));
+    for (const Value& message : decode(files->read(conversationName())))
+      if (message.isString()) replayed_.push_back(message.toString());
     replayed_.pop_front();  // the kind
     if (handle()) return reply;
   } else {

@@ -85,8 +85,14 @@ bool isOfScene(ClassObject& c) {
          c.isOrOffers(std::string(IVisual::kInterface.name)) || c.isOrOffers(std::string(ICollider::kInterface.name));
 }
 
+bool SceneFeed::isOfScene(const Leaf& leaf) {
+  const auto [at, isNew] = classes_.try_emplace(leaf.classObject()->id());
+  if (isNew) at->second = remote::isOfScene(*leaf.classObject());
+  return at->second;
+}
+
 Value SceneFeed::describe(Leaf& leaf) {
-  if (!wanted_ || !isOfScene(*leaf.classObject())) return {};
+  if (!wanted_ || !isOfScene(leaf)) return {};
   Known& known = known_[leaf.id()];
   if (const auto transform = leaf.as<Transform>()) {
     known.pose = transform->local();
@@ -115,7 +121,7 @@ void SceneFeed::collect(Node& root) {
   std::vector<SceneNode*> all;
   root.collect(all);
   for (SceneNode* node : all) {
-    if (!isOfScene(*node->classObject())) continue;
+    if (!isOfScene(*node)) continue;
     Known& known = known_[node->id()];
     known.round = round_;
     const auto transform = node->as<Transform>();

@@ -58,16 +58,18 @@ class SceneFeed {
     std::string property, value;  ///< the value encoded
   };
   void collect(Node& root);
+  bool isOfScene(const Leaf& leaf);
   List poses();
   List looks(std::size_t count);
   void compare(Entry& entry, List& changed, std::size_t& bytes);
   List values();
 
   bool wanted_ = false;
-  std::map<std::uint64_t, Known> known_;  ///< by Leaf::id
-  std::vector<Entry> places_, looks_;     ///< transforms, and all others
-  std::size_t next_ = 0;                  ///< of looks_, to be compared
-  std::set<std::uint64_t> touched_;       ///< ids
+  std::map<std::uint64_t, Known> known_;   ///< by Leaf::id
+  std::vector<Entry> places_, looks_;      ///< transforms, and all others
+  std::size_t next_ = 0;                   ///< of looks_, to be compared
+  std::map<std::uint64_t, bool> classes_;  ///< whether they are of scenes, by Leaf::id of the class
+  std::set<std::uint64_t> touched_;        ///< ids
   std::vector<Followed> followed_;
   std::set<std::pair<std::uint64_t, std::string>> isFollowed_;
   std::uint64_t root_ = 0, version_ = 0, round_ = 0, modified_ = 0;
