@@ -75,9 +75,9 @@ void Mirror::change(const List& message) {
   }
   if (kind == kRename) leaf->setName(nameAt(message, 2));
   if (kind == kRemove) {
-    values_.erase(leaf->id());
     leaf->parent()->remove(*leaf);
     nodes_.erase(id);
+    std::erase_if(values_, [](const auto& known) { return !known.second.node; });
   }
 }
 
@@ -120,7 +120,7 @@ void Mirror::apply(const List& message) {
   each(4, [&](Leaf& leaf, const List& e) {
     const auto known = values_.find(leaf.id());
     if (e.size() < 3 || known == values_.end()) return;
-    if (const auto at = known->second.find(textAt(e, 1)); at != known->second.end()) at->second = e[2];
+    if (const auto at = known->second.of.find(textAt(e, 1)); at != known->second.of.end()) at->second = e[2];
   });
   applied_ = numberAt(message, 1);
 }
@@ -128,12 +128,14 @@ void Mirror::apply(const List& message) {
 const Value* Mirror::value(const Leaf& node, const std::string& property) const {
   const auto known = values_.find(node.id());
   if (known == values_.end()) return nullptr;
-  const auto at = known->second.find(property);
-  return at == known->second.end() ? nullptr : &at->second;
+  const auto at = known->second.of.find(property);
+  return at == known->second.of.end() ? nullptr : &at->second;
 }
 
 void Mirror::keep(const Leaf& node, const std::string& property, const Value& value) {
-  values_[node.id()].insert_or_assign(property, value);
+  Values& known = values_[node.id()];
+  known.node = Ref<const Leaf>(&node);
+  known.of.insert_or_assign(property, value);
 }
 
 Leaf* Mirror::find(std::uint64_t id) const {

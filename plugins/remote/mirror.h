@@ -42,7 +42,10 @@ class Mirror {
   Node& nodeOf(std::uint64_t id) const;
   Leaf* find(std::uint64_t id) const;
 
-  using Values = std::map<std::string, Value, std::less<>>;
+  struct Values {
+    Ref<const Leaf> node;
+    std::map<std::string, Value, std::less<>> of;  ///< by property
+  };
   Node& mount_;
   ProxyClasses classes_;
   SceneCopy scene_{mount_};

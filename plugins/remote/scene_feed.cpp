@@ -108,7 +108,7 @@ bool SceneFeed::follow(Leaf& leaf, const std::string& property, const Value& val
   if (isFollowed_.contains({leaf.id(), property})) return true;
   if (followed_.size() >= kMostFollowed) return false;
   isFollowed_.emplace(leaf.id(), property);
-  followed_.push_back({Ref<Leaf>(&leaf), property, encodedValue(value)});
+  followed_.push_back({Ref<Leaf>(&leaf), leaf.id(), property, encodedValue(value)});
   return true;
 }
 
@@ -189,13 +189,16 @@ void SceneFeed::compare(Entry& entry, List& changed, std::size_t& bytes) {
 /// {id, property, value} of each followed property that has another value.
 List SceneFeed::values() {
   List changed;
-  std::erase_if(followed_, [](const Followed& f) { return !f.leaf; });
+  std::erase_if(followed_, [this](const Followed& f) {
+    if (!f.leaf) isFollowed_.erase({f.id, f.property});
+    return !f.leaf;
+  });
   for (Followed& f : followed_) try {
       Value value = getProperty(*f.leaf, f.property);
       std::string encoded = encodedValue(value);
       if (encoded == f.value) continue;
       f.value = std::move(encoded);
-      changed.emplace_back(List{f.leaf->id(), f.property, std::move(value)});
+      changed.emplace_back(List{f.id, f.property, std::move(value)});
     } catch (const std::exception&) {  // it has none now
     }
   return changed;

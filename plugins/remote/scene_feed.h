@@ -34,7 +34,9 @@ class SceneFeed {
   /// The client reads a property, and gets its values from now on; false: it has too many.
   bool follow(Leaf& leaf, const std::string& property, const Value& value);
   /// The client has changed a node: the next message has it.
-  void touch(const Leaf& leaf) { touched_.insert(leaf.id()); }
+  void touch(const Leaf& leaf) {
+    if (wanted_) touched_.insert(leaf.id());
+  }
   /// The client has handled message `n`.
   void handled(std::uint64_t n) { handled_ = n; }
 
@@ -55,6 +57,7 @@ class SceneFeed {
   };
   struct Followed {
     Ref<Leaf> leaf;
+    std::uint64_t id;             ///< of the leaf
     std::string property, value;  ///< the value encoded
   };
   void collect(Node& root);
