@@ -290,9 +290,13 @@ std::optional<std::string_view> RemoteMount::take() {
   return taken_;
 }
 
-void RemoteMount::received(IConnection&, std::string_view message) { replayed_.emplace_back(message); }
+void RemoteMount::received(IConnection& connection, std::string_view message) {
+  if (connection.id() == key_) replayed_.emplace_back(message);
+}
 
-void RemoteMount::disconnected(IConnection&) { ended_ = true; }
+void RemoteMount::disconnected(IConnection& connection) {
+  if (connection.id() == key_) ended_ = true;  // not of an earlier link
+}
 
 /// Handles one message that has arrived; false if there is none. The answer to request `number` goes to `reply`.
 bool RemoteMount::receiveOne(List& reply, std::uint64_t number) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # row: p95
-# input: a run is recorded that reads, sets and calls nodes of a mounted host, handles its events, and loses it
+# input: a run is recorded that reads, sets and calls nodes of a mounted host, handles its events, connects anew, and loses it
 # right: it is simulated again without that host, to the same state, and nothing is connected to
 import signal
 import socket
@@ -41,7 +41,13 @@ on("rule", function(_, event)
   mover:addForce(0, 0.1 * body.velocity[3], 0)
   if event.cycle == 10 then mover:addForce(world.gravity[3], 0, 0) end        -- asked in a cycle
   if event.cycle == 20 then ball.localPos = { 2, 0, 30 } end
-  if event.cycle == 30 then print("kill it") end
+  if event.cycle == 25 then
+    there:close()
+    there:connect("")
+    ball, body = there:find("ball"), there:find("ball/body")
+    mover:addForce(0, body.velocity[3] + ball.localPos[3], 0)
+  end
+  if event.cycle == 40 then print("kill it") end
   if lost and event.cycle > 60 then loop:stop() end
 end)
 """
