@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "api/phases.h"
 #include "api/status.h"
 #include "host.h"
+#include "json_value.h"
 #include "progress.h"
 #include "recorded_run.h"
 #include "spark/describe.h"
@@ -108,26 +110,6 @@ std::string faultsOf(const Kernel& kernel, const std::string& first) {
                      first.empty() ? "--log-level warning tells the first of each place" : "the first: " + first);
 }
 
-Json toJson(const Value& v) {
-  switch (v.type()) {
-    case Value::Type::nil:
-      return nullptr;
-    case Value::Type::boolean:
-      return v.toBool();
-    case Value::Type::integer:
-      return v.toInteger();
-    case Value::Type::number:
-      return v.toNumber();
-    case Value::Type::string:
-      return v.toString();
-    case Value::Type::list:
-      break;
-  }
-  Json list = Json::array();
-  for (const Value& e : v.toList()) list.push_back(toJson(e));
-  return list;
-}
-
 /// How the run ended. With a tolerance of half a step, as in the run loop.
 std::string endOf(const Leaf& root) {
   const double duration = numberAt(root, kSimulation, "duration");
@@ -164,7 +146,8 @@ void addResults(Node& root, Row& row) {
 void addOutcome(const Leaf& root, Row& row) {
   row["end"] = endOf(root);
   row["cycles"] = integerAt(root, kSimulation, "cycle");
-  row["simSeconds"] = numberAt(root, kSimulation, "time");
+  // Time is a sum of steps: its last digits are those of rounding.
+  row["simSeconds"] = std::round(numberAt(root, kSimulation, "time") * 1e9) / 1e9;
   row["stateHash"] = fmt::format("{:016x}", stateHash(root));
 }
 

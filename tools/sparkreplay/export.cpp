@@ -9,6 +9,7 @@
 #include "api/phases.h"
 #include "hang_watch.h"
 #include "host.h"
+#include "json_value.h"
 #include "program.h"
 #include "recorded_run.h"
 #include "spark/describe.h"
@@ -104,7 +105,9 @@ class Table : public Node {
       const Leaf* const node = kernel().root().find(p.substr(0, dot));  // it may come and go
       const Property* const property = node ? node->classObject()->property(p.substr(dot + 1)) : nullptr;
       if (property) found_.insert(p);
-      std::string text = property ? property->get(*node).plain() : std::string();
+      const Value value = property ? property->get(*node) : Value();
+      // A list as in the tables of sparkbatch.
+      std::string text = value.isList() ? sparkhost::toJson(value).dump() : property ? value.plain() : std::string();
       if (text.find_first_of(",\"\n") != std::string::npos) {
         for (std::size_t i = 0; (i = text.find('"', i)) != std::string::npos; i += 2) text.insert(i, 1, '"');
         text.insert(0, 1, '"');
