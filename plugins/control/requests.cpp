@@ -4,14 +4,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <list>
 #include <nlohmann/json.hpp>
 
 #include "api/inputs.h"
 #include "api/phases.h"
 #include "api/removal.h"
+#include "api/scene.h"
 #include "spark/error.h"
+#include "spark/in_use.h"
 #include "spark/other_code.h"
 #include "spark/output_file.h"
+#include "spark/script.h"
+#include "spark/script_text.h"
 
 namespace spark::control {
 
@@ -171,6 +177,25 @@ Json load(Kernel& kernel, const Json& request) {
   return {{"ok", true}, {"text", text}};
 }
 
+Json make(Kernel& kernel, const Json& request) {
+  const Leaf& made = kernel.create(textOf(request, "class"), textOf(request, "path"));
+  if (auto* const scenes = kernel.root().find<ISceneServer>()) scenes->markModified();
+  return {{"ok", true}, {"text", made.path()}};
+}
+
+/// The server that answers, and perhaps one that asks, are on the call stack while the script runs: all servers stay.
+Json attach(Kernel& kernel, const Leaf& self, const Json& request) {
+  std::list<InUse> servers;
+  for (const auto& server : self.parent()->children())
+    servers.emplace_back(*server, "a script from outside runs", InUse::kAllBelow);
+  const std::string name = request.value("name", std::string("sparkctl"));
+  const Value v = kernel.root()
+                      .require<IScriptText>(IScriptServer::kPath)
+                      .attachText(nodeOf(kernel, request), textOf(request, "text"), name, true);
+  if (auto* const scenes = kernel.root().find<ISceneServer>()) scenes->markModified();
+  return {{"ok", true}, {"value", toJson(v)}, {"text", v.isNil() ? "" : v.plain()}};
+}
+
 Json unload(Kernel& kernel, const Json& request) {
   kernel.plugins().unload(textOf(request, "name"));
   return {{"ok", true}, {"text", ""}};
@@ -197,7 +222,7 @@ std::string startWatch(Kernel& kernel, const Json& request, Watch& watch) {
 
 /// The names of all requests, as part of a sentence.
 std::string knownRequests(const Node& self) {
-  std::string out = "tree, get, set, call, watch, plugins, load, unload";
+  std::string out = "tree, get, set, call, make, attach, watch, plugins, load, unload";
   for (const auto& child : self.children())
     if (const auto handler = child->as<IRequestHandler>())
       for (const std::string_view name : handler->requests()) out.append(", ").append(name);
@@ -214,7 +239,8 @@ IRequestHandler* handlerOf(const Node& self, std::string_view what) {
 }
 
 bool changesSomething(std::string_view what) {
-  return what == "set" || what == "call" || what == "load" || what == "unload";
+  constexpr std::string_view kAll[] = {"set", "call", "make", "attach", "load", "unload"};
+  return std::find(std::begin(kAll), std::end(kAll), what) != std::end(kAll);
 }
 
 std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Watch& watch, bool mayChange) {
@@ -234,6 +260,8 @@ std::string dispatch(Kernel& kernel, const Node& self, std::string_view line, Wa
   if (what == "get") return dump(get(kernel, request));
   if (what == "set") return dump(set(kernel, request));
   if (what == "call") return dump(call(kernel, self, request));
+  if (what == "make") return dump(make(kernel, request));
+  if (what == "attach") return dump(attach(kernel, self, request));
   if (what == "load") return dump(load(kernel, request));
   if (what == "unload") return dump(unload(kernel, request));
   if (what == "plugins") return dump(plugins(kernel));

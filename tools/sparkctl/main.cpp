@@ -8,6 +8,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
 #include <stdexcept>
 #include <thread>
 
@@ -113,6 +116,24 @@ void showMinus(std::string& word) {
   if (!word.empty() && word[0] == kMinus) word[0] = '-';
 }
 
+/// The text of a script of the caller; `-`: standard input.
+std::string readScript(const std::string& file) {
+  std::ifstream in;
+  if (file != "-") in.open(file, std::ios::binary);
+  if (file != "-" && !in) throw std::runtime_error(fmt::format("cannot read {}: {}", file, std::strerror(errno)));
+  std::istream& from = file == "-" ? std::cin : in;
+  return {std::istreambuf_iterator<char>(from), {}};
+}
+
+void attach(ControlConnection& simulation, const std::string& path, const std::string& text, const std::string& name) {
+  constexpr std::size_t kMost = 500'000;  // bytes: a request has at most twice as many, with its escapes
+  if (text.size() > kMost)
+    throw std::runtime_error(fmt::format("expected a script of at most {} bytes, found {}", kMost, text.size()));
+  const std::string result =
+      simulation.ask({{"do", "attach"}, {"path", path}, {"text", text}, {"name", name}}).value("text", "");
+  if (!result.empty()) print(result + "\n");
+}
+
 void ask(ControlConnection& simulation, const std::string& what, const std::string& path) {
   Json request{{"do", what}};
   if (!path.empty()) request["path"] = path;
@@ -157,6 +178,15 @@ int main(int argc, char** argv) {
   CLI::App* calls = app.add_subcommand("call", "Calls a method between two cycles");
   calls->add_option("PATH.METHOD", target)->required();
   calls->add_option("ARGUMENTS", arguments);
+  CLI::App* makes = app.add_subcommand("make", "Makes a node");
+  makes->add_option("CLASS", target)->required();
+  makes->add_option("PATH", value, "Of the new node; missing parents are made, too")->required();
+  CLI::App* attaches = app.add_subcommand("attach", "Runs a script at a node, whose handlers stay there");
+  attaches->add_option("PATH", target, "The node, in the script: self")->required();
+  attaches->add_option("FILE", value, "A script of yours; -: standard input")->required();
+  CLI::App* runs = app.add_subcommand("run", "Runs a script that is given as text, and prints what it returns");
+  runs->add_option("TEXT", value)->required();
+  runs->add_option("--at", path, "The node at which it runs")->capture_default_str();
   CLI::App* watches = app.add_subcommand("watch", "Prints a property now and whenever it changes");
   watches->add_option("PATH.PROPERTY", target)->required();
   CLI::App* asks = app.add_subcommand(
@@ -189,6 +219,9 @@ int main(int argc, char** argv) {
     if (*gets) get(simulation, target);
     if (*sets) set(simulation, target, value);
     if (*calls) call(simulation, target, arguments);
+    if (*makes) print(simulation.ask({{"do", "make"}, {"class", target}, {"path", value}}).value("text", "") + "\n");
+    if (*attaches) attach(simulation, target, readScript(value), std::filesystem::path(value).filename().string());
+    if (*runs) attach(simulation, path, value, "sparkctl run");
     if (*asks) ask(simulation, target, value);
     if (*watches) watch(simulation, target);
     if (*loads) print(simulation.ask({{"do", "load"}, {"name", target}}).value("text", "") + "\n");

@@ -120,8 +120,8 @@ void Runtime::setGlobal(std::string_view name, const Value& value) {
   if (failure) throw Error(failure->text);
 }
 
-void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
-                     const State::Body& pushArguments) {
+Value Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
+                      const State::Body& pushArguments) {
   const std::string path = node.path();
   if (!node.isLinked()) throw Error(fmt::format("cannot attach a script to {}: it is not linked into the tree", path));
   std::shared_ptr<State> state = trusted;
@@ -133,6 +133,7 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
 
   std::vector<std::weak_ptr<Subscription>> subscribed;
   std::optional<Failure> failure;
+  Value result;
   {
     const Restore running(scriptNode, Ref<Leaf>(&node));
     const Restore collecting(made, &subscribed);
@@ -141,10 +142,11 @@ void Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkNa
       load(L, text, chunkName, lua_gettop(L));
       const int function = lua_gettop(L);
       if (pushArguments) pushArguments(L);
-      lua_call(L, lua_gettop(L) - function, 0);
+      lua_call(L, lua_gettop(L) - function, 1);
+      result = toValue(L, -1);
     });
   }
-  if (!failure) return;
+  if (!failure) return result;
   for (const auto& weak : subscribed)
     if (const auto s = weak.lock()) s->remove();
   throw Error(fmt::format("the script attached to {} failed: {}", path, failure->text));

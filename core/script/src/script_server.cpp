@@ -25,6 +25,7 @@ ScriptServer& scripts(Kernel& kernel) {
 void ScriptServer::describe(Description<ScriptServer>& d) {
   d.doc("Runs configs, and scripts that are attached to nodes.");
   d.implements<IScriptServer>();
+  d.implements<IScriptText>();
 }
 
 ScriptServer::ScriptServer() = default;
@@ -76,9 +77,9 @@ void ScriptServer::attach(Leaf& node, std::string_view file, const Value& argume
   running->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
 
-void ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
+Value ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
   const auto running = impl_;
-  running->attach(node, text, fmt::format("={}", chunkName), trusted);
+  return running->attach(node, text, fmt::format("={}", chunkName), trusted);
 }
 
 void ScriptServer::warnOfUnsaved() { impl_->warnsOfUnsaved = true; }

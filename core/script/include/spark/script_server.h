@@ -11,6 +11,7 @@
 #include "spark/abi/spark/script_server.h"
 #include "spark/kernel.h"
 #include "spark/script.h"
+#include "spark/script_text.h"
 
 namespace spark {
 
@@ -21,7 +22,7 @@ namespace spark {
 /// Scripts are deterministic: `pairs` is in order of key, `math.random` draws from a kernel stream, and there is no
 /// clock and no access to files. Binary chunks are refused. State are the random numbers of each script and its table
 /// `state`; what it keeps in other globals and in locals is not.
-class ScriptServer : public Leaf, public IScriptServer {
+class ScriptServer : public Leaf, public IScriptServer, public IScriptText {
   SPARK_CLASS(ScriptServer, Leaf)
  public:
   /// Describes the class.
@@ -49,9 +50,7 @@ class ScriptServer : public Leaf, public IScriptServer {
   /// Runs a chunk of text in the environment of configs and returns its first result. Throws Error if it fails.
   Value run(std::string_view text, std::string_view chunkName);
   void attach(Leaf& node, std::string_view file, const Value& arguments = {}) override;
-  /// As attach(), for a chunk of text. `trusted` false: the script can only compute and use `self` and its descendants,
-  /// with limits on instructions and memory.
-  void attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted);
+  Value attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) override;
   /// From now on handlers that scripts add are looked through: a warning names each global and local in which one keeps
   /// what is neither saved nor hashed.
   void warnOfUnsaved();
