@@ -22,6 +22,8 @@ void RsgImporter::describe(Description<RsgImporter>& d) {
       .doc("The quotient of two integers is rounded down.");
   d.property("looseArguments", &I::rule<&R::looseArguments>, &I::setRule<&R::looseArguments>)
       .doc("Calls with wrong arguments are skipped with a warning, once for each place.");
+  d.property("looseImports", &I::rule<&R::looseImports>, &I::setRule<&R::looseImports>)
+      .doc("An import within a file that fails is logged, as in the installed base; false: it is an error.");
   d.property("defineByName", &I::rule<&R::defineByName>, &I::setRule<&R::defineByName>)
       .doc(
           "Each name has its own value. false: definitions and parameters share one list, in which names "

@@ -18,6 +18,7 @@ struct Rules {
   bool strict = false;             ///< problems that are otherwise logged are errors
   bool evalDigits6 = true;         ///< every eval rounds to single precision and six significant digits
   bool integerDivision = false;    ///< the quotient of two integers is rounded down
+  bool looseImports = false;       ///< imports within a file that fail are logged
   bool looseArguments = true;      ///< calls with wrong arguments are skipped with a warning
   bool defineByName = true;        ///< false: definitions and parameters share one list (see Environment)
   bool looseTrailingParen = true;  ///< text after the body is ignored
@@ -42,8 +43,8 @@ struct Frame {
 /// Creates nodes from scene files (`(RSG 0 1)(...)`). Compiled files are cached.
 ///
 /// When a file fails at some statement, the nodes that were created stay, the queued calls are made, and then the error
-/// is thrown. When an import within a file fails, the error is logged and the outer file continues, unless `strict` is
-/// set. See README.md.
+/// is thrown. When an import within a file fails, the outer file continues, and its error is thrown at the end;
+/// `looseImports` logs it instead, `strict` ends the file at once. See README.md.
 class RsgImporter : public Leaf, public ISceneImporter {
   SPARK_CLASS(RsgImporter, Leaf)
  public:

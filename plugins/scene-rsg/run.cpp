@@ -1,10 +1,13 @@
 #include "run.h"
 
+#include <charconv>
+#include <filesystem>
 #include <optional>
 
 #include "expression.h"
 #include "spark/error.h"
 #include "spark/plugin_object.h"
+#include "spark/script.h"
 
 namespace spark::rsg {
 
@@ -56,6 +59,7 @@ void Run::execute(Node& root) {
   } catch (const Error& e) {
     if (!failure) failure = e;
   }
+  if (!failure) failure = importFailure_;
   if (failure) throw *failure;
 }
 
@@ -184,15 +188,48 @@ void Run::call(const Statement& s, Leaf& node) {
 void Run::import(const Statement& s, Leaf& node, const List& arguments) {
   Node* const root = node.asNode();
   if (!root || !methodOf(s, node) || arguments.empty()) return invoke(s, node, arguments);  // reports the problem
-  const std::string& file = arguments.front().toString();
+  const std::string file = resourceOf(arguments.front().toString());
   try {
     importer_.kernel().root().require<ISceneServer>().importScene(file, *root,
                                                                   List(arguments.begin() + 1, arguments.end()));
   } catch (const std::exception& e) {
-    if (strict() || importer_.budget_.exhausted)
-      throw Located(fmt::format("{}: the import of '{}' failed", where(program_, s.site), file), e);
-    complain(s, Level::error, fmt::format("the import of '{}' failed, the rest goes on: {}", file, e.what()));
+    const Located failure(fmt::format("{}: the import of '{}' failed", where(program_, s.site), file), e);
+    if (strict() || importer_.budget_.exhausted) throw failure;
+    if (!importer_.rules_.looseImports && !importFailure_)
+      importFailure_ = failure;
+    else
+      complain(s, Level::error, fmt::format("the import of '{}' failed, the rest goes on: {}", file, e.what()));
   }
+}
+
+std::string Run::resourceOf(const std::string& file) const {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(program_.resource).parent_path();
+  if (folder.empty() || fs::path(file).is_absolute()) return file;
+  std::string beside = (folder / file).lexically_normal().generic_string();
+  auto* const files = importer_.kernel().root().find<IFileServer>();
+  return files && !beside.starts_with("..") && !beside.starts_with("/") && files->exists(beside) ? beside : file;
+}
+
+void Run::attachScript(Leaf& node, const List& arguments) {
+  if (arguments.empty()) throw Error("expected (attachScript <file> <arguments>...), found no file");
+  List given;
+  for (auto it = arguments.begin() + 1; it != arguments.end(); ++it) {
+    const std::string text = it->plain();
+    double number = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+    const bool isNumber = error == std::errc() && end == text.data() + text.size();
+    given.push_back(isNumber ? Value(number) : Value(text));
+  }
+  Value argument;
+  if (given.size() == 1)
+    argument = given.front();
+  else if (!given.empty())
+    argument = Value(std::move(given));
+  importer_.kernel()
+      .root()
+      .require<IScriptServer>(IScriptServer::kPath)
+      .attach(node, arguments.front().toString(), argument);
 }
 
 const Method* Run::methodOf(const Statement& s, Leaf& node) const {
@@ -206,6 +243,7 @@ const Method* Run::methodOf(const Statement& s, Leaf& node) const {
 
 void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   if (s.kind == Statement::Kind::set) return set(s, node, arguments);
+  if (s.text == "attachScript") return attachScript(node, arguments);
   const Method* method = methodOf(s, node);
   if (!method) {
     if (s.complained && !strict()) return;

@@ -3,9 +3,11 @@
 /// Execution of a compiled scene file.
 
 #include <memory>
+#include <optional>
 
 #include "environment.h"
 #include "rsg_importer.h"
+#include "spark/error.h"
 #include "spark/node.h"
 
 namespace spark::rsg {
@@ -57,6 +59,9 @@ class Run {
   /// Makes a call, or sets a property.
   void invoke(const Statement& s, Leaf& node, const List& arguments);
   void set(const Statement& s, Leaf& node, const List& arguments);
+  void attachScript(Leaf& node, const List& arguments);
+  /// The resource that an import of `file` means: the one beside this file goes before the one from the root.
+  std::string resourceOf(const std::string& file) const;
   /// Before a call of a method: what it may change or remove is older than the import or can be undone.
   void beforeCall(const Statement& s, Leaf& node);
   /// The method that a call refers to; nullptr when the node's class has none of that name.
@@ -81,6 +86,7 @@ class Run {
   Environment environment_;
   Leaf* root_ = nullptr;  ///< the node that the file is imported into
   std::vector<Queued> queue_;
+  std::optional<Error> importFailure_;  ///< the first import that failed, while the rest goes on
 };
 
 }  // namespace spark::rsg

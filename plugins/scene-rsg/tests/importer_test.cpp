@@ -76,8 +76,21 @@ TEST_CASE("errors have file, line and column, and suggest similar names") {
   CHECK(h.logged("class Probe has no method 'tel'. Did you mean 'tell'"));
 }
 
-TEST_CASE("a failing import within a file is logged with the chain of imports, and the outer file continues") {
+TEST_CASE("a failing import within a file fails the outer one, which continues to its end") {
   SceneHost h;
+  h.write("c.rsg", "(RSG 0 1)\n((nd Missing))");
+  h.write("b.rsg", "(RSG 0 1)\n(\n(importScene c.rsg)(nd Probe (setName inner)))");
+  const std::string why = h.failure("(importScene b.rsg)(nd Probe (setName after))(importScene none.rsg)");
+  CHECK(why.find("the import of 'b.rsg' failed") != std::string::npos);
+  CHECK(why.find("c.rsg:2:3: there is no class 'Missing'") != std::string::npos);
+  CHECK(h.scene->child("inner"));
+  CHECK(h.scene->child("after"));
+  CHECK(h.logged("there is no resource 'none.rsg'"));  // one is thrown, the others are logged
+}
+
+TEST_CASE("with looseImports a failing import within a file is logged with the chain of imports") {
+  SceneHost h;
+  h.set("looseImports", true);
   h.write("c.rsg", "(RSG 0 1)\n((nd Missing))");
   h.write("b.rsg", "(RSG 0 1)\n(\n(importScene c.rsg))");
   h.run("(importScene b.rsg)(nd Probe (setName after))(importScene none.rsg)(importScene)(importScene ../up.rsg)");
@@ -206,6 +219,7 @@ TEST_CASE("importers of different formats can be nested, and an error has the ch
   CHECK(h.scene->find("a/p/of[1]/leaf"));
   CHECK(h.scene->find("b"));
   h.write("inner.toy", "list\nleaf.rsg\ngone.rsg\n");
+  h.set("looseImports", true);
   h.run("(nd Transform (setName c)(nd Probe (setName p)(importScene inner.toy)))(nd Probe (setName d))");
   CHECK(h.logged("the import of 'inner.toy' failed"));
   CHECK(h.logged("gone.rsg"));

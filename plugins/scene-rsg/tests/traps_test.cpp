@@ -32,8 +32,7 @@ TEST_CASE("a definition is valid from its position to the end of the file, acros
   h.run("(nd Transform (def $x inner) (nd Probe)) (nd Probe (setName p)(tell $x)) (def $x outer) (nd Probe (tell $x))");
   CHECK(records() == Texts{"link 0 0 0", "link 0 0 0", "link 0 0 0", "inner", "outer"});
   h.write("inner.rsg", "(RSG 0 1)((nd Probe (tell $x)))");
-  h.run("(def $x 1)(importScene inner.rsg)");
-  CHECK(h.logged("there is no variable $x here"));
+  CHECK(h.failure("(def $x 1)(importScene inner.rsg)").find("there is no variable $x here") != std::string::npos);
 }
 
 TEST_CASE("queued calls use the value that a definition had at their position") {

@@ -1,0 +1,3 @@
+-- Attached by a scene file: moves its transform by the argument in each cycle.
+local args = ...
+on("rule", function() self.localPos = { self.localPos[1] + args, 0, 0 } end)
