@@ -47,5 +47,6 @@ if create ~= "CreateEffector" then return end
 -- An agent sends (create) and gets its sphere.
 local creator = new("ScriptAspect", "/sys/server/gamecontrol/creator")
 creator:on("agentConnected", function(self, event)
-  get(event.data):find("_CreateEffector").scene = "rsg/agent/sphere_2004.rsg"
+  local create = get(event.data):find("_CreateEffector")
+  create.scene, create.limit = "rsg/agent/sphere_2004.rsg", 1
 end)

@@ -4,42 +4,56 @@
 
 namespace spark {
 
-/// `(create)`: imports a fixed scene file below the agent, before the next step. Without a file it has no effect.
+/// `(create)`: imports a fixed scene file below the agent, before the next step, once for each action, up to `limit`
+/// times. Without a file it has no effect.
 class CreateEffector : public Effector {
   SPARK_CLASS(CreateEffector, Effector)
  public:
   static void describe(Description<CreateEffector>& d) {
     d.doc("Imports a fixed scene file below the agent: (create). Without a file it has no effect.");
     d.property("scene", &CreateEffector::scene_).doc("The scene file to import.");
+    d.property("limit", &CreateEffector::limit_)
+        .min(0)
+        .doc("Number of imports, further ones are refused: 1 where the file is the agent's robot; 0: no limit.");
     d.on<&CreateEffector::prepare>(phase::kPrepare);
   }
   std::string predicate() const override { return "create"; }
   std::string act(const Element& action) override {
-    if (created_) return "expected one robot, found a request for another: it has a robot already";
+    if (limit_ > 0 && created_ + pending_ >= limit_)
+      return limit_ == 1 ? "expected one robot, found a request for another: it has a robot already"
+                         : fmt::format("expected at most {} imports, found a request for one more", limit_);
     if (scene_.empty()) return "expected a file in its property scene, found none: nothing is created";
-    pending_ = true;
+    ++pending_;
     return expectNoArguments(action);
   }
 
  protected:
-  void saveState(StateWriter& out) const override { out.write(created_); }
-  void loadState(StateReader& in) override { created_ = in.readBool(); }
+  void saveState(StateWriter& out) const override {
+    out.write(created_ > 0);
+    out.aside(std::to_string(created_));
+  }
+  void loadState(StateReader& in) override {
+    in.readBool();
+    created_ = std::stoi(in.readString());
+  }
 
  private:
   void prepare(const Event&) {
-    if (!pending_) return;
-    pending_ = false;
-    AgentAspect* owner = agent();
-    if (!owner) return;
-    try {
-      owner->importScene(scene_, {});
-      created_ = true;
-    } catch (const std::exception& e) {
-      refuse(0, [&] { return fmt::format("nothing is created: {}", e.what()); });
+    const int wanted = std::exchange(pending_, 0);
+    const Ref<CreateEffector> self(this);  // what it imports may remove it
+    for (int i = 0; i < wanted && self; ++i) {
+      AgentAspect* const owner = agent();
+      if (!owner) return;
+      try {
+        owner->importScene(scene_, {});
+        if (self) ++created_;
+      } catch (const std::exception& e) {
+        if (self) refuse(0, [&] { return fmt::format("nothing is created: {}", e.what()); });
+      }
     }
   }
   std::string scene_;
-  bool pending_ = false, created_ = false;
+  int limit_ = 0, pending_ = 0, created_ = 0;
 };
 
 }  // namespace spark
