@@ -40,9 +40,12 @@ class AgentAspect : public Transform {
  public:
   static void describe(Description<AgentAspect>& d) {
     d.doc("Root of an agent: collects the perceptors and effectors below it.");
-    d.property("number", &AgentAspect::number).doc("Game control's number of the agent; 0 for nested aspects.");
+    d.property("number", &AgentAspect::number)
+        .doc("Game control's number of the agent; 0 for nested aspects and for rules.");
+    d.method("sense", &AgentAspect::senseNow)
+        .doc("Asks all perceptors below it and returns what they sense now: nested lists, as a mind gets them.");
   }
-  /// The agent's number, from 1; agents act in this order. 0: a nested aspect, no agent of its own.
+  /// The agent's number, from 1; agents act in this order. 0: a nested aspect or a rule, no agent of its own.
   int number() const { return number_; }
   /// Called once by game control.
   void setNumber(int n) { number_ = n; }
@@ -61,6 +64,7 @@ class AgentAspect : public Transform {
   }
 
  private:
+  List senseNow();
   int number_ = 0;
 };
 
@@ -75,6 +79,8 @@ class Perceptor : public SceneNode {
     d.property("predicateName", &Perceptor::predicateName_).doc("Name of the percept, where the class allows another.");
     d.property("messageName", &Perceptor::messageName, &Perceptor::setMessageName)
         .doc("The sensor's name in messages: the node's unless another is set.");
+    d.method("sense", &Perceptor::senseNow)
+        .doc("Returns what it senses now, its modifiers included: nested lists. What it senses later is not changed.");
     d.abstract();
   }
   /// Cycles of the agent from one percept to the next, at least 1.
@@ -93,6 +99,7 @@ class Perceptor : public SceneNode {
   std::string predicateName_;
 
  private:
+  List senseNow();
   std::string messageName_;
 };
 
@@ -231,10 +238,11 @@ class Effector : public SceneNode {
   std::string messageName_;
 };
 
-/// A rule of the simulation; a child of game control. Rules run in the rule phase, in child order. Registered by
-/// `gamecontrol`.
-class ControlAspect : public Node {
-  SPARK_CLASS(ControlAspect, Node)
+/// A rule of the simulation; a child of game control. Rules run in the rule phase, in child order. Like any agent
+/// aspect it may have perceptors, effectors and a Behavior below it. It is not listed among the agents, has the number
+/// 0, and is not judged. Registered by `gamecontrol`.
+class ControlAspect : public AgentAspect {
+  SPARK_CLASS(ControlAspect, AgentAspect)
  public:
   static void describe(Description<ControlAspect>& d) {
     d.doc("A rule of the simulation.");
@@ -253,6 +261,11 @@ class ControlAspect : public Node {
   /// Called by game control before an agent's aspect is removed.
   virtual void agentLeaving(AgentAspect&) {}
 
+ protected:
+  /// Where a rule is does not change in a run: its place is configuration, no state.
+  void saveState(StateWriter&) const override {}
+  void loadState(StateReader&) override {}
+
  private:
   void run(const Event& event) { enabled_ ? rule(event) : rest(event); }
   bool enabled_ = true;
@@ -264,6 +277,8 @@ struct PartRequest {
   std::string_view type;  ///< name of the class; of a scene: of the file
   std::string_view name;  ///< of the new node; "" for a scene
   Node& parent;           ///< where the new node is to be: the agent's aspect or a node below it
+  std::string_view
+      file{};  ///< of a part that comes with a scene file: that file; "": the agent asks for the part itself
 };
 
 /// Sees what agents ask for and what they do, and may refuse it. Offered by control aspects; one that is disabled sees
@@ -273,7 +288,9 @@ class IAgentJudge {
   SPARK_INTERFACE(IAgentJudge, 1);
   virtual ~IAgentJudge() = default;
   /// Judges a request before the node is made, in the prepare phase. Returns "" or one line that says why it is
-  /// refused; the agent gets this line. Must not throw.
+  /// refused; the agent gets this line. Of a scene file, also that of its robot, it judges the file first, and then
+  /// each perceptor and effector that it brings (`request.file`), which are there already: if one is refused, all are
+  /// removed again. Must not throw.
   virtual std::string judgeRequest(AgentAspect&, const PartRequest&) { return {}; }
   /// Judges an action before the effector executes it, in the act phase, in the order of the agent's message. Returns
   /// "" or one line that says why it is refused; the log gets this line. Must not throw.
@@ -281,7 +298,7 @@ class IAgentJudge {
 };
 
 /// The program of an agent that runs inside the host: a C++ class or Lua. Below /usr/agent, or below the AgentAspect of
-/// an object. Registered by `gamecontrol`.
+/// an object or a rule. Registered by `gamecontrol`.
 class Behavior : public Node {
   SPARK_CLASS(Behavior, Node)
  public:
@@ -298,7 +315,7 @@ class Behavior : public Node {
 /// Game control: connects agents to the simulation. At /sys/server/gamecontrol.
 class IGameControl {
  public:
-  SPARK_INTERFACE(IGameControl, 4);
+  SPARK_INTERFACE(IGameControl, 5);
   static constexpr const char* kPath = "/sys/server/gamecontrol";
   virtual ~IGameControl() = default;
   /// The agents, sorted by number. Valid until an agent is added or removed.
@@ -318,6 +335,10 @@ class IGameControl {
   /// Wall time from sending percepts to the agent's next message [s], smoothed over some 16 messages. NaN when it is
   /// not known: the agent runs inside the host, has not answered yet, or is no agent.
   virtual double latency(const AgentAspect& agent) const = 0;
+  /// What the perceptors at and below a node sense now, as nested lists: for minds and rules that ask when they want to
+  /// know. Modifiers act. Nothing changes by it: what the perceptors sense later is the same as without the question.
+  /// Throws Error if a perceptor fails, or in the middle of another question. Simulation thread.
+  virtual List senseNow(Node& node) = 0;
   /// The agent's connection; nullptr: it runs inside the host, its client has left, or it is no agent. Valid until the
   /// next cycle.
   virtual IConnection* connection(const AgentAspect& agent) const = 0;
@@ -328,6 +349,9 @@ class IGameControl {
   /// made then.
   virtual void restoreAgent(Node& parent, const std::string& name, int number) = 0;
 };
+
+inline List AgentAspect::senseNow() { return require<IGameControl>(IGameControl::kPath).senseNow(*this); }
+inline List Perceptor::senseNow() { return require<IGameControl>(IGameControl::kPath).senseNow(*this); }
 
 template <class Why>
 void Effector::refuse(int kind, Why&& why) {

@@ -10,6 +10,7 @@
 
 #include "gamecontrol/request_effector.h"
 #include "gamecontrol/scene_effector.h"
+#include "gamecontrol/script_event.h"
 #include "spark/error.h"
 #include "spark/state.h"
 
@@ -27,6 +28,16 @@ void GameControl::describe(Description<GameControl>& d) {
       .doc(
           "Agents that join from now on may ask for perceptors and effectors while they run: (request (perceptor "
           "<class>) (name <name>)). Control aspects decide what they get.");
+  d.property("requireAll", &GameControl::requireAll_)
+      .doc(
+          "An agent takes part only when all that it has asked for before its first percepts is granted; false: it "
+          "takes "
+          "part with what it got.");
+  d.property("byArrival", &GameControl::byArrival_)
+      .doc(
+          "Agents act in the order in which their messages arrived, as in the plain loop of the papers; false: in "
+          "order of "
+          "their numbers, which repeats.");
   d.property("createEffector", &GameControl::createEffector_)
       .doc("Class of the effector with which an agent requests its robot.");
   d.property("expect", &GameControl::expect_)
@@ -95,6 +106,13 @@ void GameControl::describe(Description<GameControl>& d) {
   d.property("agentsSeen", &GameControl::agentsSeen).doc("Number of agents that ever had a robot.");
   d.property("messagesDropped", &GameControl::messagesDropped)
       .doc("Messages with percepts that were not sent because the client had not read earlier ones.");
+  d.method("agents", &GameControl::agentPaths).doc("The paths of all agents' aspects, in order of their numbers.");
+  d.method("disqualify", &GameControl::disqualifyAgent)
+      .parameters({"agent", "why"})
+      .doc("Removes an agent, given by its number or its path, closes its connection and logs why.");
+  d.method("removeAgent", &GameControl::removeAgentAt)
+      .parameters({"agent"})
+      .doc("Removes an agent, given by its number or its path, and closes its connection.");
   d.implements<IGameControl>();
   d.implements<IRemarks>();
   d.implements<ISuccession>();
@@ -158,6 +176,7 @@ void GameControl::received(IConnection& connection, std::string_view message) {
                               ? fmt::format("there are {} agents already (maxAgents)", maxAgents_)
                               : p->receive(message, static_cast<std::size_t>(maxPending_), agentLog(), cycle_, now());
   if (why.empty()) {
+    p->setArrival(++arrivals_);
     if (holding()) gamecontrol::Hold::onMessage(*p, joinPolicy_.get());
     return;
   }
@@ -176,7 +195,7 @@ void GameControl::removeAgent(AgentAspect& agent, bool close) {
   for (const auto& p : participants_) {
     if (p->aspect() != &agent) continue;
     if (close && p->connection()) p->connection()->close("its agent was removed");
-    p->leave();
+    p->exclude();
   }
 }
 
@@ -185,7 +204,7 @@ void GameControl::disqualify(AgentAspect& agent, std::string_view why) {
     if (p->aspect() != &agent || p->leaving()) continue;
     logInfo(fmt::format("Agent {} is disqualified: {}.", agent.number(), why));
     if (p->connection()) p->connection()->close(fmt::format("it was disqualified: {}", why));
-    p->leave();
+    p->exclude();
   }
 }
 
@@ -294,7 +313,21 @@ void GameControl::takeTurn(const Event& event) {
   }
   deliver();
   activeJudges_.update(judges_);
-  for (std::size_t i = 0; i < participants_.size(); ++i) participants_[i]->execute(agentLog(), event, activeJudges_);
+  executeTurn(event);
+}
+
+/// Agents act in order of number, or in that of their last messages. What has no connection acts first then.
+void GameControl::executeTurn(const Event& event) {
+  if (!byArrival_) {
+    for (std::size_t i = 0; i < participants_.size(); ++i) participants_[i]->execute(agentLog(), event, activeJudges_);
+    return;
+  }
+  byArrivalList_.clear();
+  for (const auto& p : participants_) byArrivalList_.push_back(p.get());
+  std::sort(byArrivalList_.begin(), byArrivalList_.end(), [](const Participant* a, const Participant* b) {
+    return std::pair(a->arrival(), a->number()) < std::pair(b->arrival(), b->number());
+  });
+  for (Participant* const p : byArrivalList_) p->execute(agentLog(), event, activeJudges_);
 }
 
 void GameControl::sense(const Event& event) {
@@ -340,6 +373,8 @@ void GameControl::removeLeaving() {
   for (auto it = removed; it != participants_.end(); ++it) {
     Participant& p = **it;
     logInfo(fmt::format("{} leaves.", p.label()));
+    if (p.excluded() && p.behavior()) refusedBehaviors_.push_back(p.behavior()->id());
+    if (p.isRule()) continue;
     if (AgentAspect* aspect = p.aspect()) {
       forEachAspect([&p](ControlAspect& rule) {
         if (AgentAspect* going = p.aspect()) rule.agentLeaving(*going);
@@ -353,29 +388,69 @@ void GameControl::removeLeaving() {
   agentsChanged();
 }
 
+/// The aspect that a mind outside of /usr/agent drives: that of an object, or a rule; nullptr: it drives nothing.
+AgentAspect* GameControl::aspectFor(Behavior& mind) const {
+  auto* const aspect = mind.ancestor<AgentAspect>();
+  if (!aspect) return nullptr;
+  const auto drives = [aspect](const auto& p) { return p->aspect() == aspect && !p->leaving(); };
+  if (std::any_of(participants_.begin(), participants_.end(), drives)) return nullptr;
+  // In a robot only the outermost aspect is an agent's. Rules may have others above them.
+  const bool outermost = &aspect->outermost() == aspect;
+  return aspect->as<ControlAspect>() || outermost ? aspect : nullptr;
+}
+
 void GameControl::joinBehaviors() {
   if (!behaviorsTree_.isStale(*this)) return;
+  Node& root = kernel().root();
   std::vector<Behavior*> behaviors;
-  if (auto* home = kernel().root().find<Node>("/usr/agent")) home->collect(behaviors);
+  if (auto* home = root.find<Node>("/usr/agent")) home->collect(behaviors);
+  const std::size_t atHome = behaviors.size();
+  auto* const server = root.find<ISceneServer>();
+  if (Node* const scene = server ? server->activeScene() : nullptr) scene->collect(behaviors);
+  root.collect(behaviors);  // in scenes that are not active, and of rules
   const auto known = [this](Behavior* b) {
     return std::any_of(participants_.begin(), participants_.end(), [b](const auto& p) { return p->behavior() == b; }) ||
            std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end();
   };
-  const std::size_t atHome = behaviors.size();
-  auto* const server = kernel().root().find<ISceneServer>();
-  if (Node* const scene = server ? server->activeScene() : nullptr) scene->collect(behaviors);
   // One that starts may be a script, which removes others.
   const std::vector<Ref<Behavior>> joining(behaviors.begin(), behaviors.end());
   for (std::size_t i = 0; i < joining.size(); ++i) {
     Behavior* const b = joining[i].get();
     if (!b || known(b)) continue;
-    // In the scene only those that are below an aspect of their own make an agent: of the object above the aspect.
-    auto* const aspect = i < atHome ? nullptr : b->ancestor<AgentAspect>();
-    if (i >= atHome && (!aspect || aspect->number() != 0 || &aspect->outermost() != aspect)) continue;
+    auto* const aspect = i < atHome ? nullptr : aspectFor(*b);
+    if (i >= atHome && !aspect) continue;
     const std::uint64_t id = b->id();
     if (!join(std::make_unique<Participant>(*b, actedAt_), aspect)) refusedBehaviors_.push_back(id);
   }
+  for (const Ref<Behavior>& mind : joining)
+    if (mind && !known(mind.get()))
+      reportIdle(
+          *mind,
+          "drives nothing: expected it below /usr/agent, or as the only mind below a rule or below the AgentAspect "
+          "of an object");
+  reportIdleEffectors();
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
+}
+
+/// Rules ask their perceptors when they want to know; effectors act for a mind only.
+void GameControl::reportIdleEffectors() {
+  std::vector<ControlAspect*> rules;
+  collect(rules);
+  for (ControlAspect* const rule : rules) {
+    std::vector<Effector*> effectors;
+    rule->collect(effectors);
+    std::vector<Behavior*> minds;
+    if (!effectors.empty()) rule->collect(minds);
+    if (!effectors.empty() && minds.empty())
+      reportIdle(*effectors.front(), "is never used: a rule's effectors need a Behavior below the rule, its mind");
+  }
+}
+
+/// Logs once that a node has no effect.
+void GameControl::reportIdle(const Leaf& node, std::string_view why) {
+  if (std::find(idle_.begin(), idle_.end(), node.id()) != idle_.end()) return;
+  idle_.push_back(node.id());
+  kernel().log().warning("{} ({}) {}.", node.path(), node.classObject()->name(), why);
 }
 
 void GameControl::joinNewcomers() {
@@ -392,13 +467,13 @@ void GameControl::joinNewcomers() {
 
 AgentAspect& GameControl::createAspect(Node& parent, const std::string& name) {
   auto& aspect = parent.create<AgentAspect>("AgentAspect", name);
-  if (auto scene = aspect.create(createEffector_, "_CreateEffector").as<SceneEffector>())
-    scene->setFolder(robotFolder_);
+  if (auto scene = aspect.create(createEffector_, kCreateEffector).as<SceneEffector>()) scene->setFolder(robotFolder_);
   return aspect;
 }
 
 void GameControl::withdrawAgents() {
   for (const auto& p : participants_) {
+    if (p->isRule()) continue;
     forEachAspect([&p](ControlAspect& rule) {
       if (AgentAspect* going = p->aspect()) rule.agentLeaving(*going);
     });
@@ -412,7 +487,7 @@ void GameControl::restoreAgent(Node& parent, const std::string& name, int number
   const Ref<AgentAspect> aspect = there ? Ref<AgentAspect>(there->as<AgentAspect>()) : Ref(&createAspect(parent, name));
   if (!aspect) throw Error(fmt::format("{}: expected room for {}, found another object", parent.path(), name));
   aspect->setNumber(number);
-  if (requests_ && !aspect->child("_Request")) RequestEffector::addTo(*aspect, robotFolder_);
+  if (requests_ && !aspect->child(RequestEffector::kName)) RequestEffector::addTo(*aspect, robotFolder_);
   forEachAspect([&aspect](ControlAspect& rule) {
     if (AgentAspect* made = aspect.get()) rule.agentConnected(*made);
   });
@@ -420,7 +495,8 @@ void GameControl::restoreAgent(Node& parent, const std::string& name, int number
 
 /// Creates the agent's aspect, unless it is `ready`. False if that fails; the participant is removed then.
 bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* ready) {
-  const int number = nextNumber_++;
+  const bool rule = ready && ready->as<ControlAspect>();
+  const int number = rule ? numberOfNextRule() : nextNumber_++;
   Participant& p = *participant;
   participants_.push_back(std::move(participant));
   Ref<AgentAspect> aspect(ready);
@@ -430,11 +506,13 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
       Node& scene = server ? server->scene() : require<Node>(ISceneServer::kDefaultScene);
       aspect = &createAspect(scene, fmt::format("AgentAspect{}", number));
     }
-    aspect->setNumber(number);
-    if (requests_) RequestEffector::addTo(*aspect, robotFolder_);
-    p.join(number, *aspect, {std::size_t{!ready} + requests_, requests_}, actedAt_);
+    if (!rule) aspect->setNumber(number);
+    const bool asks = requests_ && !rule;
+    if (asks) RequestEffector::addTo(*aspect, robotFolder_);
+    p.join(number, *aspect, {std::size_t{!ready} + asks, asks}, actedAt_);
   } catch (const std::exception& e) {
     kernel().log().error("{} cannot be made: {}", p.label(), e.what());
+    kernel().countFault();
     if (p.connection()) p.connection()->close("no agent could be made for it");
     if (aspect && ready)
       aspect->setNumber(0);
@@ -444,6 +522,7 @@ bool GameControl::join(std::unique_ptr<Participant> participant, AgentAspect* re
     return false;
   }
   agentsChanged();
+  if (rule) return logInfo(fmt::format("{} has a mind.", p.label())), true;
   logInfo(fmt::format("{} joins.", p.label()));
   forEachAspect([&p](ControlAspect& rule) {
     if (AgentAspect* made = p.aspect()) rule.agentConnected(*made);
@@ -467,8 +546,34 @@ const std::vector<AgentAspect*>& GameControl::agents() const {
   if (!agentsTree_.changed(*this)) return agents_;
   agents_.clear();
   for (const auto& p : participants_)
-    if (AgentAspect* a = p->aspect(); a && a->isLinked()) agents_.push_back(a);
+    if (AgentAspect* a = p->aspect(); a && a->isLinked() && !p->isRule()) agents_.push_back(a);
   return agents_;
+}
+
+/// Numbers of rules with minds are apart from those of agents, and above them.
+int GameControl::numberOfNextRule() const {
+  constexpr int kFirst = 1'000'000'000;
+  int next = kFirst;
+  for (const auto& p : participants_) next = std::max(next, p->number() + 1);
+  return next;
+}
+
+List GameControl::agentPaths() const {
+  List out;
+  for (const AgentAspect* const agent : agents()) out.emplace_back(agent->path());
+  return out;
+}
+
+AgentAspect& GameControl::agentAt(const Value& agent) const {
+  const std::string which = agent.plain();
+  const Leaf* const named = agent.isString() ? kernel().root().find<Leaf>(which) : nullptr;
+  std::string known;
+  for (AgentAspect* const a : agents()) {
+    if (named == a || std::to_string(a->number()) == which) return *a;
+    known += fmt::format("{}{} {}", known.empty() ? "" : ", ", a->number(), a->path());
+  }
+  throw Error(fmt::format("expected the number or the path of an agent, found '{}'; {}", which,
+                          known.empty() ? "there is none" : "there are " + known));
 }
 
 const GameControl::Participant* GameControl::participantOf(const AgentAspect& agent) const {
@@ -491,6 +596,53 @@ const Predicates* GameControl::percepts(const AgentAspect& agent) const {
 double GameControl::latency(const AgentAspect& agent) const {
   const Participant* p = participantOf(agent);
   return p ? p->latency() : std::numeric_limits<double>::quiet_NaN();
+}
+
+bool GameControl::requiresWhatItAsks(const AgentAspect& agent) const {
+  const Participant* const p = participantOf(agent);
+  return requireAll_ && p && p->requiresNow(cycle_);
+}
+
+void GameControl::reject(AgentAspect& agent, const std::string& why) {
+  for (const auto& p : participants_) {
+    if (p->aspect() != &agent || p->rejected()) continue;
+    logInfo(fmt::format("{} does not take part: {}.", p->label(), why));
+    p->reject(why);
+  }
+}
+
+List GameControl::senseNow(Node& node) {
+  if (asking_) throw Error("a perceptor that is asked cannot ask others");
+  std::vector<Perceptor*> perceptors;
+  if (const auto self = node.as<Perceptor>()) perceptors.push_back(self);
+  node.collect(perceptors);
+  perceptors.erase(std::unique(perceptors.begin(), perceptors.end()), perceptors.end());
+  const std::vector<Ref<Perceptor>> all(perceptors.begin(), perceptors.end());
+  const Event event = gamecontrol::eventNow(kernel().root().find<ISimulation>());
+  struct Asking {
+    bool& on;
+    explicit Asking(bool& flag) : on(flag) { on = true; }
+    ~Asking() { on = false; }
+  } asking(asking_);
+
+  // What a perceptor and its modifiers remember is afterwards what it was before.
+  ++round_;
+  Predicates out;
+  for (const Ref<Perceptor>& perceptor : all) {
+    if (!perceptor) continue;  // a perceptor that is a script removed it
+    NowRunning now("sense", perceptor.get());
+    StateWriter before(true);
+    saveTree(*perceptor, before);
+    const auto first = out.size();
+    if (const auto view = perceptor->as<ISharedView>()) view->share(round_);
+    if (!perceptor) continue;
+    perceptor->sense(out, event);
+    if (const auto modifiers = gamecontrol::ModifierChain::of(*perceptor))
+      modifiers->apply({Signal::Kind::percept, out, first}, event, now);
+    StateReader then(before.bytes());
+    loadTree(*perceptor, then);
+  }
+  return toList(out);
 }
 
 IConnection* GameControl::connection(const AgentAspect& agent) const {
@@ -525,6 +677,7 @@ void GameControl::saveState(StateWriter& out) const {
   out.write(agentsSeen_);
   out.write(cyclesToTurn_);
   out.aside(released_ ? "released" : "");
+  if (out.keeps()) out.aside(refusedPaths());
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
     out.write(p->number());
@@ -532,11 +685,30 @@ void GameControl::saveState(StateWriter& out) const {
   }
 }
 
+/// The minds that do not join, one in a line.
+std::string GameControl::refusedPaths() const {
+  std::vector<Behavior*> all;
+  kernel().root().collect(all);
+  std::string out;
+  for (const Behavior* b : all)
+    if (std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end())
+      out += b->path() + "\n";
+  return out;
+}
+
+void GameControl::refuse(std::string_view paths) {
+  refusedBehaviors_.clear();
+  for (std::size_t end; (end = paths.find('\n')) != paths.npos; paths.remove_prefix(end + 1))
+    if (const auto* const mind = kernel().root().find<Behavior>(paths.substr(0, end)))
+      refusedBehaviors_.push_back(mind->id());
+}
+
 void GameControl::loadState(StateReader& in) {
   nextNumber_ = static_cast<int>(in.readInteger());
   agentsSeen_ = static_cast<int>(in.readInteger());
   cyclesToTurn_ = static_cast<int>(in.readInteger());
   released_ = in.readString() == "released";
+  refuse(in.readString());
   std::vector<std::unique_ptr<Participant>> restored;
   for (std::size_t n = in.readCount(); n > 0; --n) {
     const auto number = static_cast<int>(in.readInteger());

@@ -28,6 +28,8 @@ class GameControl : public Node,
                     public IInputGate {
   SPARK_CLASS(GameControl, Node)
  public:
+  /// Name of the effector with which an agent requests its robot, below its aspect.
+  static constexpr const char* kCreateEffector = "_CreateEffector";
   static void describe(Description<GameControl>& d);
 
   const std::vector<AgentAspect*>& agents() const override;
@@ -37,6 +39,7 @@ class GameControl : public Node,
   int agentsSeen() const override { return agentsSeen_; }
   const Predicates* percepts(const AgentAspect& agent) const override;
   double latency(const AgentAspect& agent) const override;
+  List senseNow(Node& node) override;
   IConnection* connection(const AgentAspect& agent) const override;
   void withdrawAgents() override;
   void restoreAgent(Node& parent, const std::string& name, int number) override;
@@ -53,6 +56,10 @@ class GameControl : public Node,
 
   /// True if a robot may be loaded for `agent` in this cycle; otherwise the effector tries again in the next one.
   bool mayLoad(const AgentAspect& agent);
+  /// True if the agent takes part only if what it asks for in this act phase is granted (`requireAll`).
+  bool requiresWhatItAsks(const AgentAspect& agent) const;
+  /// The agent does not take part; `why`: one line without a full stop at its end.
+  void reject(AgentAspect& agent, const std::string& why);
   /// Writes a log line that an agent caused; their rate is limited.
   void logError(const std::string& line);
 
@@ -73,6 +80,17 @@ class GameControl : public Node,
   void joinBehaviors();
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
+  AgentAspect* aspectFor(Behavior& mind) const;
+  void reportIdle(const Leaf& node, std::string_view why);
+  void reportIdleEffectors();
+  std::string refusedPaths() const;
+  void refuse(std::string_view paths);
+  void executeTurn(const Event& event);
+  int numberOfNextRule() const;
+  List agentPaths() const;
+  AgentAspect& agentAt(const Value& agent) const;
+  void disqualifyAgent(const Value& agent, const std::string& why) { disqualify(agentAt(agent), why); }
+  void removeAgentAt(const Value& agent) { removeAgent(agentAt(agent), true); }
   AgentAspect& createAspect(Node& parent, const std::string& name);
   bool seat(IConnection& connection);
   bool resume(Participant* player, Participant& client);
@@ -102,7 +120,8 @@ class GameControl : public Node,
   gamecontrol::Participants participants_;  ///< in order of number
   gamecontrol::Participants newcomers_;     ///< in order of arrival
   std::vector<std::uint64_t>
-      refusedBehaviors_;                      ///< ids of behaviors for which no agent could be created; not tried again
+      refusedBehaviors_;  ///< ids of behaviors whose agents could not be made or were excluded; not tried again
+  std::vector<std::uint64_t> idle_;           ///< ids of minds and effectors that were reported to have no effect
   mutable std::vector<AgentAspect*> agents_;  ///< of participants_; a cache that agents() updates
   mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
@@ -120,9 +139,12 @@ class GameControl : public Node,
 
   std::string createEffector_ = "SceneEffector", robotFolder_ = "rsg/agent/";
   int expect_ = 0, maxAgents_ = 64, maxPending_ = 262144, loadsPerCycle_ = 4;
-  bool sync_ = false, requests_ = false;
-  bool released_ = false;  ///< the hold is over
-  bool restored_ = false;  ///< a state was loaded since the last act phase
+  bool sync_ = false, requests_ = false, requireAll_ = true, byArrival_ = false;
+  std::uint64_t arrivals_ = 0;               ///< number of the last message
+  std::vector<Participant*> byArrivalList_;  ///< participants in the order in which they act, with byArrival
+  bool asking_ = false;                      ///< in senseNow()
+  bool released_ = false;                    ///< the hold is over
+  bool restored_ = false;                    ///< a state was loaded since the last act phase
   double joinBudget_ = 30, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1,
          joinPace_ = 0.01, idleLimit_ = 60;
 

@@ -11,8 +11,9 @@
 
 namespace spark {
 
-/// Decides which perceptors, effectors and scene files agents may ask for; agents that ask for others too often are
-/// disqualified.
+/// Decides which perceptors, effectors and scene files agents may ask for, the files of their robots among them; agents
+/// that ask for others too often are disqualified. A file that is not listed itself is granted if something is listed,
+/// and so are all perceptors and effectors that it brings.
 class RequestAspect : public ControlAspect, public IAgentJudge {
   SPARK_CLASS(RequestAspect, ControlAspect)
  public:
@@ -20,7 +21,11 @@ class RequestAspect : public ControlAspect, public IAgentJudge {
     using R = RequestAspect;
     d.doc("Decides what agents may ask for, and disqualifies those that ask for something else too often.");
     d.implements<IAgentJudge>();
-    d.property("allowed", &R::allowed_).doc("Classes and scene files that are granted; all others are refused.");
+    d.property("allowed", &R::allowed_)
+        .doc(
+            "Classes and scene files that are granted, also with (scene <file>); all others are refused. A file that "
+            "is not "
+            "listed needs all its perceptors and effectors listed.");
     d.property("tolerance", &R::tolerance_)
         .min(-1)
         .doc("Refused requests after which an agent's next one disqualifies it; -1: never.");
@@ -28,8 +33,10 @@ class RequestAspect : public ControlAspect, public IAgentJudge {
   void rule(const Event&) override {}
   void agentLeaving(AgentAspect& agent) override { refused_.erase(agent.number()); }
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override {
-    if (std::find(allowed_.begin(), allowed_.end(), request.type) != allowed_.end()) return {};
+    if (allows(request.type) || (!request.file.empty() && allows(request.file))) return {};
+    if (request.kind == PartRequest::Kind::scene && !allowed_.empty()) return {};  // its parts decide
     std::string why = "the rules do not allow " + std::string(request.type);
+    if (!request.file.empty()) why += " in " + std::string(request.file);
     if (tolerance_ >= 0 && ++refused_[agent.number()] > tolerance_)
       if (auto* control = find<IGameControl>(IGameControl::kPath))
         control->disqualify(agent, "it asked again for what the rules do not allow, " + std::string(request.type));
@@ -41,6 +48,9 @@ class RequestAspect : public ControlAspect, public IAgentJudge {
   void loadState(StateReader& in) override;
 
  private:
+  bool allows(std::string_view what) const {
+    return std::find(allowed_.begin(), allowed_.end(), what) != allowed_.end();
+  }
   std::vector<std::string> allowed_;
   int tolerance_ = -1;
   std::map<int, int> refused_;  ///< number of refused requests by number of the agent

@@ -35,8 +35,9 @@ Participant::Participant(int number, AgentAspect& aspect, Behavior* behavior)
       behavior_(behavior),
       aspect_(&aspect),
       inside_(behavior != nullptr),
-      vacant_(!behavior) {
-  aspect.setNumber(number);
+      vacant_(!behavior),
+      isRule_(aspect.as<ControlAspect>()) {
+  if (!isRule_) aspect.setNumber(number);
 }
 
 void Participant::connect(IConnection& connection, Clock::time_point now) {
@@ -60,8 +61,10 @@ void Participant::join(int number, AgentAspect& aspect, Given given, Clock::time
   given_ = given;
   number_ = number;
   aspect_ = &aspect;
+  isRule_ = static_cast<bool>(aspect.as<ControlAspect>());
   joinedAt_ = now;
-  label_ = fmt::format("agent {} ({})", number, inside_ ? behavior()->path() : connection_->peer());
+  label_ = isRule_ ? fmt::format("rule {}", aspect.path())
+                   : fmt::format("agent {} ({})", number, inside_ ? behavior()->path() : connection_->peer());
   if (inside_) behavior()->start(actions_.pending());
 }
 
@@ -143,7 +146,9 @@ bool Participant::isSync(std::string_view predicate) const {
 void Participant::depart(std::int64_t cycle, const AgentLatencies& latencies) {
   latencies_ = latencies;
   lockstep_.beginTurn();
-  if (!actions_.skips() && !waitsForRobot()) actions_.depart(cycle + latencies.act);
+  if (actions_.skips() || waitsForRobot()) return;
+  actions_.depart(cycle + latencies.act);
+  if (!perceived_) requiredUntil_ = cycle + latencies.act;
 }
 
 void Participant::execute(AgentLog& log, const Event& event, const JudgeList& judges) {
@@ -157,7 +162,7 @@ void Participant::execute(AgentLog& log, const Event& event, const JudgeList& ju
   for (TransitQueue& arriving = actions_.underWay(); arriving.hasArrived(cycle); arriving.pop())
     for (const Element action : arriving.first()) {
       if (!action.isList()) continue;
-      if (leaving_) break;  // a judge disqualified it
+      if (leaving_ || rejected()) break;  // a judge disqualified it
       const std::string_view head = action.head();
       if (head.empty()) {
         warn(log, cycle, "expected (predicate arguments...), found a list that does not begin with a word.");
@@ -190,7 +195,7 @@ void Participant::executeModified(AgentLog& log, const Event& event, const Judge
       }
     for (const Element action : m->actions) {
       Effector* const effector = m->effector.get();
-      if (!effector || leaving_) break;
+      if (!effector || leaving_ || rejected()) break;
       now.at(effector);
       executeAction(*effector, action, log, event.cycle, judges);
     }
@@ -201,7 +206,7 @@ void Participant::executeModified(AgentLog& log, const Event& event, const Judge
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
                                 const JudgeList& judges) {
   try {
-    if (AgentAspect* const agent = aspect())
+    if (AgentAspect* const agent = isRule_ ? nullptr : aspect())
       if (const std::string why = judges.judgeAction(*agent, effector, action); !why.empty())
         return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
@@ -231,7 +236,7 @@ bool Participant::resolveRobot() {
   const bool first = !hasRobot_ && (perceptors > given_.perceptors || effectors > given_.effectors);
   blind_ = perceptors <= given_.perceptors;
   hasRobot_ |= first;
-  return first;
+  return first && !isRule_;
 }
 
 bool Participant::sense(const Event& event) {
@@ -261,9 +266,11 @@ int Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point no
 /// False if the message was dropped.
 bool Participant::deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
   if (leaving() || vacant_) return true;
-  if (percepts_.first().empty() && !(inside_ ? blind_ && hasRobot_ : sendsEmpty_)) return true;
+  if (percepts_.first().empty() && !(inside_ ? blind_ && (hasRobot_ || given_.isObject()) : sendsEmpty_)) return true;
+  perceived_ = true;
   if (inside_) {
     think(log, cycle);
+    if (rejected()) leave();
     return true;
   }
   encode();
@@ -275,6 +282,10 @@ bool Participant::deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_po
   latency_.onPercepts(now);
   // The actions that were held back answer the first percepts.
   if (sent_ == 1 && actions_.holdingBack()) actions_.releaseHeldBack();
+  if (rejected()) {
+    connection_->close(fmt::format("it does not take part: {}", rejection_));
+    leave();
+  }
   return true;
 }
 
@@ -339,6 +350,10 @@ void Participant::save(StateWriter& out) const {
     own.write(given_.perceptors);
     own.write(sent_);
     own.write(claimed_);
+    own.write(perceived_);
+    own.write(requiredUntil_);
+    own.write(rejection_);
+    own.write(static_cast<std::int64_t>(arrival_));
     lockstep_.save(own);
     if (!inside_) actions_.save(own);
     actions_.saveHold(own);
@@ -374,6 +389,10 @@ std::unique_ptr<Participant> Participant::load(StateReader& in, int number, Node
   out->given_.perceptors = static_cast<std::size_t>(own.readInteger());
   out->sent_ = own.readInteger();
   out->claimed_ = own.readBool();
+  out->perceived_ = own.readBool();
+  out->requiredUntil_ = own.readInteger();
+  out->rejection_ = own.readString();
+  out->arrival_ = static_cast<std::uint64_t>(own.readInteger());
   out->lockstep_.load(own);
   if (!inside) out->actions_.load(own);
   out->actions_.loadHold(own);

@@ -67,8 +67,22 @@ class Participant {
   Behavior* behavior() const { return behavior_.get(); }
   bool inside() const { return inside_; }
 
+  /// True if it is a rule with a mind: no agent to others.
+  bool isRule() const { return isRule_; }
+  /// True if what it asks for now was sent before its first percepts came.
+  bool requiresNow(std::int64_t cycle) const { return cycle <= requiredUntil_; }
+  /// It does not take part, as what it requires was refused: it acts no more, and leaves as soon as it has heard so.
+  void reject(std::string why) { rejection_ = std::move(why); }
+  bool rejected() const { return !rejection_.empty(); }
+  /// When its last message came, as a number that grows with each message; 0: it has none.
+  std::uint64_t arrival() const { return arrival_; }
+  void setArrival(std::uint64_t n) { arrival_ = n; }
+
   /// Marks it for removal at the start of the next act phase.
   void leave() { leaving_ = true; }
+  /// The same; its mind, if it has one, does not join again.
+  void exclude() { leaving_ = excluded_ = true; }
+  bool excluded() const { return excluded_ || rejected(); }
   /// True if it is to be removed: it was marked, or its aspect, behavior or connection is gone.
   bool leaving() const {
     return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_ && !vacant_);
@@ -97,6 +111,8 @@ class Participant {
   /// What game control gives an agent when it joins.
   struct Given {
     std::size_t effectors = 0, perceptors = 0;
+    /// The agent is an object of the scene, or a rule: it needs no robot.
+    bool isObject() const { return effectors == perceptors; }
   };
   /// Assigns number and aspect. A behavior adds its first actions. The agent has a robot as soon as it has more than
   /// what is given.
@@ -260,6 +276,11 @@ class Participant {
   bool leaving_ = false, heardFrom_ = false, hasRobot_ = false, vacant_ = false;
   Seat seat_;
   bool wasConnected_ = false, returns_ = false;
+  bool isRule_ = false, excluded_ = false;
+  bool perceived_ = false;           ///< its first percepts have arrived
+  std::int64_t requiredUntil_ = -1;  ///< cycle of its last action that was sent before them
+  std::string rejection_;            ///< "", or why it does not take part
+  std::uint64_t arrival_ = 0;
   bool turn_ = true, sendsEmpty_ = false;  ///< see setTurn()
   bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
   Given given_;

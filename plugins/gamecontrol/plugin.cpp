@@ -2,6 +2,7 @@
 
 #include "api/modifier.h"
 #include "gamecontrol/agent_timing.h"
+#include "gamecontrol/disqualify_effector.h"
 #include "gamecontrol/game_control.h"
 #include "gamecontrol/judges.h"
 #include "gamecontrol/request_effector.h"
@@ -16,5 +17,5 @@ SPARK_PLUGIN("gamecontrol", "1.0",
              spark::GameControl, spark::AgentTiming, spark::AgentLatency, spark::AgentAspect, spark::Perceptor,
              spark::Effector, spark::ControlAspect, spark::Behavior, spark::Modifier, spark::NumberModifier,
              spark::SceneEffector, spark::RequestEffector, spark::RequestPerceptor, spark::RequestAspect,
-             spark::ActionLimitAspect, spark::ScriptBehavior, spark::ScriptPerceptor, spark::ScriptEffector,
-             spark::ScriptAspect)
+             spark::ActionLimitAspect, spark::DisqualifyEffector, spark::ScriptBehavior, spark::ScriptPerceptor,
+             spark::ScriptEffector, spark::ScriptAspect)

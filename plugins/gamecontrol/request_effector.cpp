@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "gamecontrol/judged_import.h"
 #include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
 
@@ -13,7 +14,6 @@ namespace {
 
 using Kind = PartRequest::Kind;
 
-constexpr const char* kAnswers = "_RequestAnswers";
 constexpr const char* kCamera = "ImagePerceptor";
 constexpr const char* kUsage =
     "expected (request (perceptor <class>) (name <name>) (at <node>)), or effector in its place, or (request (scene "
@@ -66,7 +66,19 @@ bool isPlain(std::string_view name) {
 
 /// True for what game control gives an agent once: another one would undo its limits.
 bool isGiven(ClassObject& type) {
-  return type.isA("RequestEffector") || type.isA("RequestPerceptor") || type.isA("SceneEffector");
+  return type.isA("RequestEffector") || type.isA("RequestPerceptor") || type.isA("SceneEffector") ||
+         type.isA("DisqualifyEffector");
+}
+
+/// True if the agent has a robot, loaded by itself or made by a rule: more than what game control gives it. Objects
+/// that are agents need none.
+bool hasRobot(const AgentAspect& root) {
+  const auto* const loader = root.find<SceneEffector>(GameControl::kCreateEffector);
+  if (!loader || loader->loaded()) return true;
+  return std::any_of(root.children().begin(), root.children().end(), [](const auto& child) {
+    return child->name() != GameControl::kCreateEffector && child->name() != RequestEffector::kName &&
+           child->name() != RequestPerceptor::kName;
+  });
 }
 
 }  // namespace
@@ -114,8 +126,8 @@ void RequestEffector::describe(Description<RequestEffector>& d) {
 }
 
 void RequestEffector::addTo(AgentAspect& aspect, const std::string& folder) {
-  aspect.create<RequestEffector>("RequestEffector", "_Request").folder_ = folder;
-  aspect.create("RequestPerceptor", kAnswers);
+  aspect.create<RequestEffector>("RequestEffector", kName).folder_ = folder;
+  aspect.create("RequestPerceptor", RequestPerceptor::kName);
 }
 
 std::string RequestEffector::act(const Element& action) {
@@ -125,12 +137,14 @@ std::string RequestEffector::act(const Element& action) {
        {std::pair("perceptor", Kind::perceptor), {"effector", Kind::effector}, {"scene", Kind::scene}}) {
     if (!action.named(word)) continue;
     Request request{kind, std::string(textOf(action, word)), std::string(textOf(action, "name")),
-                    std::string(textOf(action, "at"))};
+                    std::string(textOf(action, "at")), false};
     if (request.type.empty() || (kind != Kind::scene && request.name.empty())) return kUsage;
     if (std::max({request.type.size(), request.name.size(), request.at.size()}) > kMaxText)
       return fmt::format("expected texts of at most {} bytes, found a longer one.", kMaxText);
     if (!isPlain(request.type) || !isPlain(request.name) || !isPlain(request.at))
       return "expected names of printable ASCII characters, found others, a blank, a bracket or a quote.";
+    if (const auto* const control = find<GameControl>(IGameControl::kPath); control && agent())
+      request.required = control->requiresWhatItAsks(agent()->outermost());
     pending_.push_back(std::move(request));
     return {};
   }
@@ -142,19 +156,23 @@ void RequestEffector::prepare(const Event&) {
   AgentAspect* const nearest = agent();
   const std::vector<Request> requests = std::exchange(pending_, {});
   if (!nearest) return;
-  AgentAspect& root = nearest->outermost();
-  const Ref<RequestPerceptor> answers(find<RequestPerceptor>(fmt::format("../{}", kAnswers)));
+  const Ref<AgentAspect> root(&nearest->outermost());
+  const Ref<RequestPerceptor> answers(find<RequestPerceptor>(fmt::format("../{}", RequestPerceptor::kName)));
   const Ref<RequestEffector> self(this);  // a judge may be a script that removes the agent
   for (const Request& request : requests) {
+    const bool early = !hasRobot(*root);
     std::string why;
     try {
-      why = grant(request, root);
+      why = early ? "there is no robot yet: expected (scene <file>) first" : grant(request, *root);
     } catch (const std::exception& e) {
       // The agent need not know the host's folders.
       why = "it cannot be made, the log of the host says why";
       if (self) refuse(static_cast<int>(request.kind), [&] { return fmt::format("{}: {}", request.type, e.what()); });
     }
-    if (!self) return;
+    if (!self || !root) return;
+    if (!why.empty() && request.required && !early)
+      if (auto* const control = find<GameControl>(IGameControl::kPath))
+        control->reject(*root, fmt::format("it requires {}, which is refused: {}", request.type, why));
     if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
   }
 }
@@ -168,8 +186,6 @@ Node* RequestEffector::parentFor(const Request& request, AgentAspect& root) cons
 
 std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   // What it is, and where it goes.
-  if (const auto* const robot = find<SceneEffector>("../_CreateEffector"); robot && !robot->loaded())
-    return "there is no robot yet: expected (scene <file>) first";
   if (parts_ >= maxParts_) return fmt::format("{} requests were granted, no more are", maxParts_);
   Node* const parent = parentFor(request, root);
   if (!parent) return fmt::format("there is no node {} in this robot", request.at);
@@ -189,23 +205,18 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   }
 
   // The judges, then the tree.
-  auto* const control = find<IGameControl>(IGameControl::kPath);
-  if (control)
+  const Ref<RequestEffector> self(this);
+  if (request.kind == Kind::scene) {
+    std::string why = gamecontrol::importJudged(root, *parent, request.type, {});
+    if (self && why.empty()) ++parts_;
+    return why;
+  }
+  if (auto* const control = find<IGameControl>(IGameControl::kPath))
     if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent});
         !why.empty())
       return why;
   ++parts_;
-  if (request.kind == Kind::scene) {
-    const std::size_t before = parent->children().size();
-    try {
-      kernel().root().require<ISceneServer>().importScene(request.type, *parent, {});
-    } catch (...) {
-      while (parent->children().size() > before) parent->remove(*parent->children().back());
-      throw;
-    }
-  } else {
-    parent->create(request.type, request.name);
-  }
+  parent->create(request.type, request.name);
   if (auto* const scenes = kernel().root().find<ISceneServer>()) scenes->markModified();
   return {};
 }

@@ -15,6 +15,8 @@ namespace spark {
 class RequestPerceptor : public Perceptor {
   SPARK_CLASS(RequestPerceptor, Perceptor)
  public:
+  /// Its name below an agent's aspect.
+  static constexpr const char* kName = "_RequestAnswers";
   static void describe(Description<RequestPerceptor>& d) {
     d.doc("Reports what became of requests: (granted (name n)), (refused (name n) (why words...)).");
   }
@@ -39,6 +41,8 @@ class RequestEffector : public Effector {
   SPARK_CLASS(RequestEffector, Effector)
  public:
   static void describe(Description<RequestEffector>& d);
+  /// Its name below an agent's aspect.
+  static constexpr const char* kName = "_Request";
   /// Gives an agent this effector and the perceptor that reports the results.
   /// `folder`: scene files that it asks for are below it.
   static void addTo(AgentAspect& aspect, const std::string& folder);
@@ -53,6 +57,7 @@ class RequestEffector : public Effector {
   struct Request {
     PartRequest::Kind kind;
     std::string type, name, at;
+    bool required;  ///< the agent takes part only if it is granted
   };
   void prepare(const Event&);
   /// Makes the node. Returns "", or why it cannot be made.

@@ -4,6 +4,8 @@
 
 #include "api/agents.h"
 #include "gamecontrol/game_control.h"
+#include "gamecontrol/judged_import.h"
+#include "gamecontrol/request_effector.h"
 #include "spark/error.h"
 
 namespace spark {
@@ -101,19 +103,27 @@ class SceneEffector : public Effector {
     file_.clear();
     if (!nearest) return kernel().log().error("{}: (scene {}) needs an agent aspect above the effector.", path(), file);
     AgentAspect& root = nearest->outermost();
-    const std::size_t before = root.children().size();
+    const int number = root.number();
+    Log& log = kernel().log();
+    const Ref<SceneEffector> self(this);  // a judge may be a script that removes the agent
+    std::string why;
     try {
-      auto& server = kernel().root().require<ISceneServer>();
-      server.importScene(file, root, arguments_);
-      loaded_ = true;
-      server.markModified();
+      why = gamecontrol::importJudged(root, root, file, arguments_);
+      if (self && !why.empty()) report(file, why);
     } catch (const std::exception& e) {
-      ++failures_;
-      // Remove what was imported before the error.
-      while (root.children().size() > before) root.remove(*root.children().back());
-      const std::string line = fmt::format("Agent {} gets no robot: {}", root.number(), e.what());
-      control ? control->logError(line) : kernel().log().write(Level::error, line);
+      why = e.what();
     }
+    if (why.empty() && self) loaded_ = true;
+    if (why.empty()) return;
+    if (self) ++failures_;
+    const std::string line = fmt::format("Agent {} gets no robot: {}", number, why);
+    control ? control->logError(line) : log.write(Level::error, line);
+  }
+
+  /// Tells an agent that may ask for parts that a rule refuses its robot.
+  void report(const std::string& file, const std::string& why) {
+    if (auto* const answers = find<RequestPerceptor>(fmt::format("../{}", RequestPerceptor::kName)))
+      answers->add(file, why);
   }
 
   static constexpr int kMaxFailures = 10;

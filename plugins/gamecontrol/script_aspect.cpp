@@ -6,11 +6,11 @@ namespace spark {
 
 namespace {
 constexpr std::string_view kJudge = "judge", kConnected = "agentConnected", kLeaving = "agentLeaving",
-                           kRequest = "request";
+                           kRequest = "request", kAction = "action";
 }
 
 void ScriptAspect::describe(Description<ScriptAspect>& d) {
-  d.doc("A rule written in Lua: its handlers of judge, agentConnected, agentLeaving and request.");
+  d.doc("A rule written in Lua: its handlers of judge, agentConnected, agentLeaving, request and action.");
   d.implements<IAgentJudge>();
   d.link(&ScriptAspect::simulation_, At<ISimulation>()).doc("The clock of its events.");
   d.method("script", &ScriptAspect::script)
@@ -26,6 +26,7 @@ void ScriptAspect::onLink() {
   events.define(kLeaving, Order::parentsFirst, "At a ScriptAspect: an agent goes; data: the path of its aspect.");
   events.define(kRequest, Order::parentsFirst,
                 "At a ScriptAspect: an agent asks for a perceptor, an effector or a scene file; returns why not.");
+  actions_ = &events.define(kAction, Order::parentsFirst, "At a ScriptAspect: an agent acts; returns why it may not.");
 }
 
 void ScriptAspect::script(const std::string& file, const Value& arguments) {
@@ -38,8 +39,15 @@ void ScriptAspect::agentLeaving(AgentAspect& agent) { tell(kLeaving, agent); }
 
 std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   constexpr const char* kKinds[] = {"perceptor", "effector", "scene"};
-  const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name});
+  const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name, request.file});
   const Value answer = gamecontrol::askScripts(*this, kRequest, gamecontrol::eventNow(simulation_.get()), &data);
+  return gamecontrol::reasonOf(answer);
+}
+
+std::string ScriptAspect::judgeAction(AgentAspect& agent, const Effector&, const Element& action) {
+  if (!actions_ || actions_->empty()) return {};
+  const Value data(List{agent.path(), gamecontrol::toValue(action)});
+  const Value answer = gamecontrol::askScripts(*this, kAction, gamecontrol::eventNow(simulation_.get()), &data);
   return gamecontrol::reasonOf(answer);
 }
 

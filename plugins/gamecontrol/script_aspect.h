@@ -10,7 +10,9 @@ namespace spark {
 /// Its script's handlers are the rule: `judge` runs once in each cycle while the aspect is enabled, `agentConnected`
 /// and `agentLeaving` when an agent comes and goes. Their `event.data` is the path of the agent's aspect. `request`
 /// runs when an agent asks for a perceptor, an effector or a scene file; `event.data` is { path of the agent's aspect,
-/// "perceptor", class, name }, and a text that it returns refuses the request.
+/// "perceptor", class, name, file }, and a text that it returns refuses the request; `file` is the scene file that the
+/// part comes with, or "". `action` runs when an agent acts; `event.data` is { path of the agent's aspect, action },
+/// and a text that it returns refuses the action.
 class ScriptAspect : public ControlAspect, public IAgentJudge {
   SPARK_CLASS(ScriptAspect, ControlAspect)
  public:
@@ -19,6 +21,7 @@ class ScriptAspect : public ControlAspect, public IAgentJudge {
   void agentConnected(AgentAspect& agent) override;
   void agentLeaving(AgentAspect& agent) override;
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override;
+  std::string judgeAction(AgentAspect& agent, const Effector& effector, const Element& action) override;
 
  protected:
   void onLink() override;
@@ -28,6 +31,7 @@ class ScriptAspect : public ControlAspect, public IAgentJudge {
   void tell(std::string_view channel, const AgentAspect& agent);
 
   Link<ISimulation> simulation_;
+  Channel* actions_ = nullptr;  ///< of `action`
 };
 
 }  // namespace spark

@@ -6,18 +6,6 @@ namespace spark {
 
 namespace {
 constexpr std::string_view kPerform = "perform";
-
-/// The action as a value. Languages without types send numbers as words.
-Value toValue(const Element& e) {
-  if (e.isList()) {
-    List out;
-    for (const Element inner : e) out.push_back(toValue(inner));
-    return out;
-  }
-  if (e.token().kind == Token::Kind::integer) return e.token().integer;
-  const std::optional<double> number = e.token().quoted ? std::nullopt : e.asNumber();
-  return number ? Value(*number) : Value(e.text());
-}
 }  // namespace
 
 void ScriptEffector::describe(Description<ScriptEffector>& d) {
@@ -39,7 +27,7 @@ void ScriptEffector::script(const std::string& file, const Value& arguments) {
 }
 
 std::string ScriptEffector::act(const Element& action) {
-  const Value data = toValue(action);
+  const Value data = gamecontrol::toValue(action);
   const Value answer = gamecontrol::askScripts(*this, kPerform, gamecontrol::eventNow(simulation_.get()), &data);
   return gamecontrol::reasonOf(answer);
 }

@@ -9,6 +9,7 @@
 
 #include "api/phases.h"
 #include "spark/kernel.h"
+#include "spark/predicates.h"
 #include "spark/script.h"
 
 namespace spark::gamecontrol {
@@ -42,6 +43,18 @@ inline Event eventNow(const ISimulation* simulation) {
   event.step = simulation->step();
   event.cycle = simulation->cycle();
   return event;
+}
+
+/// An action or a part of it as a value. Languages without types send numbers as words.
+inline Value toValue(const Element& e) {
+  if (e.isList()) {
+    List out;
+    for (const Element inner : e) out.push_back(toValue(inner));
+    return out;
+  }
+  if (e.token().kind == Token::Kind::integer) return e.token().integer;
+  const std::optional<double> number = e.token().quoted ? std::nullopt : e.asNumber();
+  return number ? Value(*number) : Value(e.text());
 }
 
 /// Attaches a script file to `node`; its `...` is `arguments`. Throws Error if it cannot be loaded.

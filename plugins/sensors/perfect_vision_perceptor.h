@@ -7,7 +7,7 @@
 
 namespace spark {
 
-/// `(PerfectVision (box (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of the scene [m]. For demos.
+/// `(PerfectVision (box (pos 1.00 2.00 0.04)) ...)`: world positions of all transforms of its scene [m]. For demos.
 class PerfectVisionPerceptor : public Perceptor, public ISceneCalls {
   SPARK_CLASS(PerfectVisionPerceptor, Perceptor)
  public:
@@ -38,8 +38,14 @@ class PerfectVisionPerceptor : public Perceptor, public ISceneCalls {
  private:
   void collect() {
     transforms_.clear();
-    auto* server = kernel().root().find<ISceneServer>();
-    if (Node* scene = server ? server->activeScene() : nullptr) scene->collect(transforms_);
+    if (Node* const scene = ownScene()) scene->collect(transforms_);
+  }
+  /// The scene that it is in; outside of scenes, as below a rule, the active one.
+  Node* ownScene() const {
+    for (Node* up = parent(); up; up = up->parent())
+      if (up->classObject()->isA("Scene")) return up;
+    auto* const server = kernel().root().find<ISceneServer>();
+    return server ? server->activeScene() : nullptr;
   }
   std::vector<Transform*> transforms_;
   TreeWatch tree_;

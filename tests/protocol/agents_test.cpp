@@ -207,6 +207,48 @@ TEST_CASE("The agent of a client that leaves is removed at the start of the next
   REQUIRE(a.control->agents()[1]->number() == 3);
 }
 
+TEST_CASE("An agent that requires what is refused hears why, acts no more and leaves") {
+  for (const bool all : {true, false}) {
+    Arena a;
+    a.set("requests", true);
+    a.set("requireAll", all);
+    Client c = a.client();
+    a.until([&] { return a.agents() == 1; });
+    c.send("(scene robot)(request (perceptor Nothing)(name n))");
+    std::string heard;
+    a.until([&] {
+      for (const std::string& message : c.drain()) heard += message;
+      return heard.find("(refused (name n)") != std::string::npos;
+    });
+    c.send("(he1 1)");
+    if (all) {
+      CHECK(c.closed());
+      a.until([&] { return a.agents() == 0; });
+      CHECK(actionLog().empty());
+      CHECK(a.logged("does not take part: it requires Nothing, which is refused: expected the class of a perceptor"));
+    } else {
+      a.until([&] { return !actionLog().empty(); });
+      CHECK(a.agents() == 1);
+    }
+  }
+}
+
+TEST_CASE("With byArrival agents act in the order in which their messages arrived") {
+  for (const bool byArrival : {true, false}) {
+    Arena a;
+    Client one = robot(a), two = robot(a);
+    a.set("byArrival", byArrival);
+    for (Client* sender : {&two, &one}) {
+      sender->send("(he1 1)");
+      sender->arrive();
+      a.net->poll();
+    }
+    actionLog().clear();
+    applyActions(a, 2);
+    CHECK(actionLog() == (byArrival ? ActionLog{"2 he1 1", "1 he1 1"} : ActionLog{"1 he1 1", "2 he1 1"}));
+  }
+}
+
 TEST_CASE("Removing an agent closes its connection only on request") {
   Arena a;
   Client c = robot(a);

@@ -32,7 +32,9 @@ void makeFouls(World& w) {
                              {"Soccer.PassModeMinOppBallDist", 0.5},
                              {"/sys/server/gamecontrol.requests", true}});
   w.kernel.create("OffsideAspect", "/sys/server/gamecontrol/OffsideAspect");
-  setProperty(w.kernel.create("RequestAspect", "/sys/server/gamecontrol/requestRule"), "tolerance", 1);
+  Leaf& requestRule = w.kernel.create("RequestAspect", "/sys/server/gamecontrol/requestRule");
+  setProperty(requestRule, "tolerance", 1);
+  setProperty(requestRule, "allowed", Value(List{"rsg/agent/scenario.rsg"}));
   for (int n = 1; n <= 5; ++n) w.join("A", n, box(kStanding, n % 3));
   for (int n = 1; n <= 3; ++n) w.join("B", n, box(kStanding, n % 3));
   w.join("B", 4, box(kLying, 0));

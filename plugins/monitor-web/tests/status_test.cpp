@@ -45,6 +45,7 @@ class TwoAgents : public Node, public IGameControl {
   std::string judgeRequest(AgentAspect&, const PartRequest&) override { return {}; }
   int agentsSeen() const override { return 2; }
   const Predicates* percepts(const AgentAspect&) const override { return nullptr; }
+  List senseNow(Node&) override { return {}; }
   double latency(const AgentAspect& agent) const override { return &agent == all[0] ? 0.0125 : std::nan(""); }
   IConnection* connection(const AgentAspect& agent) const override {
     return agent.name() == "thinks" ? thinks : agent.name() == "begins" ? begins : nullptr;
