@@ -393,6 +393,9 @@ void SpadesServer::removeLost() {
       consumer_->disconnected(a);
     }
     agents_.erase(agents_.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!agents_.empty()) continue;
+    kernel().log().error("{}: all agents are lost, the simulation goes on without any.", path());
+    kernel().countFault();
   }
 }
 
