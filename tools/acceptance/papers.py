@@ -1,16 +1,17 @@
 """The milestone `papers`: every row of docs/papers.md, with the tests that show it."""
 import re
+import sys
 
 from acceptance.common import BIN, FAIL, OPEN, PASS, ROOT, run, say
 from acceptance.common import tests as ctest
 
 PAGE = ROOT / "docs/papers.md"
-TEST = re.compile(r'`(test-[a-z0-9-]+|browser-[a-z-]+)(?: "([^"]+)")?`')
+TEST = re.compile(r'`(test-[a-z0-9-]+|browser-[a-z-]+|page-[a-z-]+|reports)(?: "([^"]+)")?`')
 
 
 def sections():
-    """(title, rows) of the page; a row is (claim, tests), each test a program and a pattern of its cases, or a story of the
-    browser and ""."""
+    """(title, rows) of the page; a row is (claim, tests), each test a program and a pattern of its cases, `reports` and a case
+    of tests/reports, or a story of the browser or a page and ""."""
     found = []
     for line in PAGE.read_text().splitlines():
         if line.startswith("## "):
@@ -27,6 +28,8 @@ def shown(program, pattern):
     if not pattern:
         return ctest(program)[1] != FAIL
     say(f'{program} "{pattern}"')
+    if program == "reports":
+        return run([sys.executable, ROOT / "tests/reports/run.py", "--bin", BIN, pattern], cwd=ROOT).returncode == 0
     tests = BIN.parent / "tests"
     done = run([tests / program, pattern.replace(",", "\\,"), "--warn", "NoTests"], cwd=ROOT)
     return done.returncode == 0
