@@ -248,6 +248,8 @@ class ControlAspect : public AgentAspect {
     d.doc("A rule of the simulation.");
     d.abstract();
     d.property("enabled", &ControlAspect::enabled_).doc("False: the rule has no effect, as if it were not there.");
+    d.property("localTransform", &ControlAspect::local).doc("A rule is at the origin of the world.");
+    d.property("localPos", &ControlAspect::localPos).unit("m").doc("A rule is at the origin of the world.");
     d.on<&ControlAspect::run>(phase::kRule);
   }
   /// Applies the rule, once in each cycle while it is enabled.
@@ -262,7 +264,7 @@ class ControlAspect : public AgentAspect {
   virtual void agentLeaving(AgentAspect&) {}
 
  protected:
-  /// Where a rule is does not change in a run: its place is configuration, no state.
+  /// A rule stays at the origin: its place is no state.
   void saveState(StateWriter&) const override {}
   void loadState(StateReader&) override {}
 

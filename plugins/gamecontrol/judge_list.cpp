@@ -13,12 +13,14 @@ void JudgeList::update(const Links<IAgentJudge>& links) {
 std::string JudgeList::judgeRequest(AgentAspect& agent, const PartRequest& request) const {
   const Ref<AgentAspect> asking(&agent);
   const Ref<Node> parent(&request.parent);
+  std::string first;
   for (const Judge& j : judges_) {
     if (!j.leaf) continue;
-    if (std::string why = j.judge->judgeRequest(agent, request); !why.empty()) return why;
-    if (!asking || !parent) return "the place of the new node was removed";
+    std::string why = j.judge->judgeRequest(agent, request);
+    if (first.empty()) first = std::move(why);
+    if (!asking || !parent) return first.empty() ? "the place of the new node was removed" : first;
   }
-  return {};
+  return first;
 }
 
 std::string JudgeList::judgeAction(AgentAspect& agent, Effector& effector, const Element& action) const {

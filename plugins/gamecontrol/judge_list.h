@@ -16,9 +16,9 @@ class JudgeList {
  public:
   /// Takes the judges of `links`, without control aspects that are disabled.
   void update(const Links<IAgentJudge>& links);
-  /// IAgentJudge::judgeRequest() of all of them: "", or the reason of the first that refuses.
+  /// IAgentJudge::judgeRequest() of all of them, also of those after one that refuses: "", or the first reason.
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) const;
-  /// IAgentJudge::judgeAction() of all of them, in the same way. Allocates nothing without judges.
+  /// IAgentJudge::judgeAction() of one after the other, until one refuses. Allocates nothing without judges.
   std::string judgeAction(AgentAspect& agent, Effector& effector, const Element& action) const;
 
  private:

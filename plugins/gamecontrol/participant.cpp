@@ -90,9 +90,10 @@ bool Participant::remark(AgentLog& log, std::int64_t cycle, std::string_view pre
 
 void Participant::warnUnknown(AgentLog& log, std::int64_t cycle, std::string_view predicate) {
   constexpr std::size_t kMaxGuess = 40;  // bytes of a predicate for which a similar one is suggested
-  const std::uint64_t kind = Mistakes::kindOf(predicate, hasRobot_ ? "unknown" : "no robot");
+  const bool needsRobot = !hasRobot_ && !given_.isObject();
+  const std::uint64_t kind = Mistakes::kindOf(predicate, needsRobot ? "no robot" : "unknown");
   if (mistakes_.known(kind)) return;
-  const std::string hint = !hasRobot_
+  const std::string hint = needsRobot
                                ? " It has no robot yet: expected (scene <file>), and the rest after its percepts."
                            : predicate.size() <= kMaxGuess ? didYouMean(predicate, effectors_.predicates())
                                                            : std::string();

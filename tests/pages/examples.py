@@ -127,6 +127,7 @@ CONTEXT = {
     "plugins/remote/README.md lua 1": Context(arguments=["--set", "remoteAddress=127.0.0.1:3401"]),
     "plugins/remote/README.md lua 2": Context('include "house.lua" simulation()\n', host=["--config", "soccer-sphere.lua", "--set", "remoteAddress=127.0.0.1:3400", "--set",
                                               "remoteToken=0123456789abcdef", "--web-port", "0"]),
+    "plugins/scene-meshes/README.md lua 1": Context(files={"models/chair.obj": OBJ}, arguments=["--scene-path", "."]),
     "plugins/scene-rsg/README.md lua 2": Context(WORLD),
     "plugins/scene-rsg/README.md lisp 1": Context(arguments=[0.1]),
     "plugins/simulation-spades/README.md lua 1": Context(files={"agentdb.xml": "XML", "myagent": SPADES_AGENT}, arguments=["--set", "agentDatabase=agentdb.xml"]),

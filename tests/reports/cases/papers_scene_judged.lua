@@ -41,5 +41,5 @@ on("rule", function(self, event)
   end
   local all = table.concat(asked, "; ")
   judge("a rule in Lua hears of files and their parts: " .. all:sub(1, 120),
-        all:find("scene rsg/agent/papers_cart.rsg", 1, true) and all:find("effector ForceEffector legs rsg/agent/papers_cart.rsg", 1, true))
+        all:find("scene rsg/agent/papers_bare.rsg", 1, true) == 1 and all:find("scene rsg/agent/papers_cart.rsg", 1, true) and all:find("effector ForceEffector legs rsg/agent/papers_cart.rsg", 1, true))
 end)
