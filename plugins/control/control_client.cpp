@@ -9,7 +9,7 @@ namespace asio = boost::asio;
 using boost::system::error_code;
 
 namespace {
-constexpr std::size_t kMaxRequestBytes = 1 << 20;  // scripts are the longest requests
+constexpr std::size_t kMaxRequestBytes = 65536;
 }
 
 ControlClient::ControlClient(Socket socket) : socket_(std::move(socket)) { socket_.non_blocking(true); }

@@ -126,7 +126,7 @@ std::string readScript(const std::string& file) {
 }
 
 void attach(ControlConnection& simulation, const std::string& path, const std::string& text, const std::string& name) {
-  constexpr std::size_t kMost = 500'000;  // bytes: a request has at most twice as many, with its escapes
+  constexpr std::size_t kMost = 30'000;  // bytes: a request has at most twice as many, with its escapes
   if (text.size() > kMost)
     throw std::runtime_error(fmt::format("expected a script of at most {} bytes, found {}", kMost, text.size()));
   const std::string result =

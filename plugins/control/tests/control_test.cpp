@@ -281,7 +281,7 @@ TEST_CASE("Children of the control server can handle additional requests for all
   Fixture f;
   f.connect();
   REQUIRE(f.ask({{"do", "weather"}})["error"] ==
-          "expected tree, get, set, call, watch, plugins, load, or unload, found 'weather'");
+          "expected tree, get, set, call, make, attach, watch, plugins, load, or unload, found 'weather'");
   f.host.kernel.registerClass<Weatherman>();
   auto& handler = f.host.kernel.create<Weatherman>("Weatherman", "/sys/server/control/weather");
   REQUIRE(f.ask({{"do", "weather"}, {"place", "Leipzig"}})["sky"] == "Leipzig is grey");
