@@ -22,7 +22,13 @@ bool contains(const Predicates& predicates, std::string_view head) {
 
 bool sent(const Participant& p, std::string_view predicate) { return contains(p.pending(), predicate); }
 bool identified(const Participant& p, const IJoinPolicy* policy) { return policy && sent(p, policy->predicate()); }
-bool complete(const Participant& p) { return !p.leaving() && p.held().complete && sent(p, kScene); }
+bool complete(const Participant& p) {
+  return !p.leaving() && (p.held().needsNoRobot || (p.held().complete && sent(p, kScene)));
+}
+/// True if the match may start with this agent when time is up. Without a policy a rule may make its robot.
+bool usable(const Participant& p, const IJoinPolicy* policy) {
+  return !p.leaving() && (sent(p, kScene) || (!policy && p.heardFrom()));
+}
 double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 /// Team name, number, and the text of `(scene ...)`. If an agent has stated several identities the first one counts.
@@ -44,6 +50,9 @@ std::string describeMissing(const Participant& p, const IJoinPolicy* policy) {
   const bool isIdentified = identified(p, policy);
   if (!p.heardFrom()) return fmt::format("{} has said nothing", p.label());
   const std::string init = policy && !isIdentified ? fmt::format("({} ...)", policy->predicate()) : std::string();
+  if (!sent(p, kScene) && !policy)
+    return fmt::format("{} owes (scene ...) and (syn), or any answer to (time ...) if a rule makes its robot",
+                       p.label());
   if (!sent(p, kScene))
     return fmt::format("{} owes (scene ...){}{} and (syn)", p.label(), init.empty() ? "" : ", ", init);
   if (isIdentified) return fmt::format("{} has named its robot and its team, owes (syn)", p.label());
@@ -57,13 +66,16 @@ std::string describeMissing(const Participant& p, const IJoinPolicy* policy) {
 
 void Hold::onMessage(Participant& p, const IJoinPolicy* policy) {
   const bool answersGreeting = std::exchange(p.held().greeted, false);
+  if (answersGreeting && !policy && !sent(p, kScene)) p.held().needsNoRobot = true;
   if (!contains(p.lastMessage(), kSync)) return;
   p.held().answers += answersGreeting;
   if (!policy || identified(p, policy) || p.held().answers >= kAnswersWithoutIdentity) p.held().complete = true;
 }
 
 /// True if the match starts with this agent.
-bool Hold::isReady(const Participant& p) const { return complete(p) || (timedOut_ && !p.leaving() && sent(p, kScene)); }
+bool Hold::isReady(const Participant& p, const IJoinPolicy* policy) const {
+  return complete(p) || (timedOut_ && usable(p, policy));
+}
 
 bool Hold::isOver(const List& newcomers, const Terms& terms, Log& log) {
   const auto now = terms.now;
@@ -73,10 +85,10 @@ bool Hold::isOver(const List& newcomers, const Terms& terms, Log& log) {
   if (std::exchange(complete_, ready) != ready) log.info("{} of {} expected agents are ready.", ready, terms.agents);
   if (ready >= terms.agents) return true;
 
-  greetSilent(newcomers, terms.greetAfter, now);
-  const bool anyRobot =
-      std::any_of(newcomers.begin(), newcomers.end(), [](const auto& p) { return !p->leaving() && sent(*p, kScene); });
-  timedOut_ = anyRobot && terms.startAfter > 0 && seconds(now - progressAt_) >= terms.startAfter;
+  greetSilent(newcomers, terms, now);
+  const bool anyUsable =
+      std::any_of(newcomers.begin(), newcomers.end(), [&](const auto& p) { return usable(*p, terms.policy); });
+  timedOut_ = anyUsable && terms.startAfter > 0 && seconds(now - progressAt_) >= terms.startAfter;
   if (timedOut_)
     log.warning(
         "Of {} expected agents {} are ready, and nothing more came for {} s (joinWait): the match starts. Others join "
@@ -87,10 +99,11 @@ bool Hold::isOver(const List& newcomers, const Terms& terms, Log& log) {
   return timedOut_;
 }
 
-void Hold::greetSilent(const List& newcomers, double greetAfter, Clock::time_point now) const {
+void Hold::greetSilent(const List& newcomers, const Terms& terms, Clock::time_point now) const {
   for (const auto& p : newcomers) {
-    if (p->leaving() || complete(*p) || p->held().greeted || !sent(*p, kScene) ||
-        seconds(now - p->lastHeard()) <= greetAfter)
+    const bool owesRobot = terms.policy && !sent(*p, kScene);
+    if (p->leaving() || complete(*p) || p->held().greeted || owesRobot ||
+        seconds(now - p->lastHeard()) <= terms.greetAfter)
       continue;
     Predicates greeting;
     greeting.open("time").open("now").add(0.0).close().close();
@@ -103,7 +116,8 @@ void Hold::greetSilent(const List& newcomers, double greetAfter, Clock::time_poi
 /// again and again makes none.
 void Hold::updateProgress(const List& newcomers, const IJoinPolicy* policy, Clock::time_point now) {
   int steps = 0;
-  for (const auto& p : newcomers) steps += sent(*p, kScene) + identified(*p, policy) + p->held().complete;
+  for (const auto& p : newcomers)
+    steps += sent(*p, kScene) + identified(*p, policy) + p->held().complete + p->held().needsNoRobot;
   if (steps <= progress_) return;
   progress_ = steps;
   progressAt_ = now;
@@ -137,8 +151,8 @@ void Hold::orderNewcomers(List& newcomers, int expect, const IJoinPolicy* policy
   int places = expect;
   const auto completeEnd = std::stable_partition(newcomers.begin(), newcomers.end(),
                                                  [&](const auto& p) { return complete(*p) && places-- > 0; });
-  const auto end = std::stable_partition(completeEnd, newcomers.end(),
-                                         [&](const auto& p) { return places > 0 && isReady(*p) && places-- > 0; });
+  const auto end = std::stable_partition(
+      completeEnd, newcomers.end(), [&](const auto& p) { return places > 0 && isReady(*p, policy) && places-- > 0; });
   std::stable_sort(newcomers.begin(), end,
                    [&](const auto& a, const auto& b) { return sortKey(*a, policy) < sortKey(*b, policy); });
   for (auto it = newcomers.begin(); it != end; ++it) (*it)->holdBack(kScene, !timedOut_);

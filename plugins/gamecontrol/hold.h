@@ -6,9 +6,9 @@
 /// `(scene ...)`, which names its robot, its identity, and `(syn)` in the same message as these or later: a `(syn)`
 /// that is still in the network at the start could count as the answer to the first percepts. The game's IJoinPolicy
 /// knows how an agent states its identity; below that predicate is `(init ...)`. Without a policy agents have no
-/// identity, and
-/// `(scene ...)` and `(syn)` are enough. When enough agents are complete, they are ordered by team name and number,
-/// then by their `(scene ...)`, so that their numbers do not depend on the order of arrival.
+/// identity, and `(scene ...)` and `(syn)` are enough; an agent whose robot a rule makes owes neither. When enough
+/// agents are complete, they are ordered by team name and number, then by their `(scene ...)`, so that their numbers do
+/// not depend on the order of arrival.
 ///
 /// Clients of a game with a policy differ in what they wait for before they continue:
 ///
@@ -17,11 +17,12 @@
 ///     step by step       scene      <- message    init       <- message    syn
 ///     without a team     scene syn  <- message    syn        <- message    syn        and never an init
 ///     one program        agent 1 as above, then agent 2, which connects when agent 1 has got more messages
+///     without a policy   <- message    anything but a scene: a rule makes the robot
 ///
-/// So a client that has sent `(scene ...)` and is silent for a moment gets a minimal message, `(time (now 0.00))`, once
-/// after each of its messages, until it is complete. One that has answered two of them with `(syn)` and without `(init
-/// ...)` is complete, too. For the last kind of client this is not enough: when no agent has made progress for a while,
-/// the match starts with those that are ready.
+/// So a client that has sent `(scene ...)`, or need not, and is silent for a moment gets a minimal message, `(time (now
+/// 0.00))`, once after each of its messages, until it is complete. One that has answered two of them with `(syn)` and
+/// without `(init ...)` is complete, too. For clients of one program this is not enough: when no agent has made progress
+/// for a while, the match starts with those that are ready.
 
 #include <memory>
 #include <string>
@@ -55,8 +56,8 @@ class Hold {
   void orderNewcomers(List& newcomers, int expect, const IJoinPolicy* policy) const;
 
  private:
-  bool isReady(const Participant& p) const;
-  void greetSilent(const List& newcomers, double greetAfter, Clock::time_point now) const;
+  bool isReady(const Participant& p, const IJoinPolicy* policy) const;
+  void greetSilent(const List& newcomers, const Terms& terms, Clock::time_point now) const;
   void updateProgress(const List& newcomers, const IJoinPolicy* policy, Clock::time_point now);
   void report(const List& newcomers, const Terms& terms, Clock::time_point now, Log& log);
 

@@ -225,9 +225,10 @@ class Participant {
   // ---- the hold before the start, see Hold ----
 
   struct Held {
-    bool complete = false;  ///< it waits for nothing but the start
-    bool greeted = false;   ///< a greeting was sent since its last message
-    int answers = 0;        ///< number of greetings that it answered with a sync predicate
+    bool complete = false;      ///< it waits for nothing but the start
+    bool greeted = false;       ///< a greeting was sent since its last message
+    bool needsNoRobot = false;  ///< it answered a greeting without naming one: a rule makes it
+    int answers = 0;            ///< number of greetings that it answered with a sync predicate
   };
   Held& held() { return held_; }
   const Held& held() const { return held_; }

@@ -222,6 +222,32 @@ TEST_CASE("Without a join policy expected agents need no init, and their robots 
   CHECK(actionLog()[2] == "1 init A 9");  // the init sent during the hold
 }
 
+TEST_CASE("Without a join policy an expected agent whose robot a rule makes owes an answer alone") {
+  for (const std::string answer : {"(syn)", "(he1 1)"}) {
+    Arena a(true);
+    auto& control = a.kernel.root().require<Node>("/sys/server/gamecontrol");
+    control.remove(*control.find("names"));
+    a.set("expect", 1);
+    a.set("holdWait", 0.01);
+    a.set("holdReport", 0.01);
+    a.set("joinWait", 3600.0);
+    Client c = a.client();
+    if (answer == "(syn)") {
+      c.send("(syn)");  // perhaps it names its robot in its next message
+      c.arrive();
+      a.until([&] { return a.gate->ready(true) || a.logged("if a rule makes its robot"); }, false);
+    }
+    REQUIRE_FALSE(a.gate->ready(true));
+    std::vector<std::string> got;
+    a.until([&] { return a.gate->ready(true) || !(got = c.drain()).empty(); }, false);
+    REQUIRE(got == std::vector<std::string>{"(time (now 0.00))"});
+    c.send(answer);
+    a.until([&] { return a.gate->ready(true); }, false);
+    a.cycle();
+    CHECK(a.agents() == 1);
+  }
+}
+
 TEST_CASE("The messages to agents do not depend on the number of threads") {
   REQUIRE(match({0, 1, 2, 3, 4}, Style::atOnce, 4) == match({0, 1, 2, 3, 4}, Style::atOnce, 1));
 }
