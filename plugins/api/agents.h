@@ -264,9 +264,9 @@ class ControlAspect : public AgentAspect {
   virtual void agentLeaving(AgentAspect&) {}
 
  protected:
-  /// A rule stays at the origin: its place is no state.
+  /// A rule stays at the origin of what it is below: its place is no state.
   void saveState(StateWriter&) const override {}
-  void loadState(StateReader&) override {}
+  void loadState(StateReader&) override { AgentAspect::onLink(); }
 
  private:
   void run(const Event& event) { enabled_ ? rule(event) : rest(event); }

@@ -11,8 +11,7 @@
 ///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
 ///     {"do":"make","path","class"}                  {"ok":true,"text"}: makes a node; the text is its path
 ///     {"do":"attach","path","text","name"}          {"ok":true,"text","value"}: runs a script at a node, see
-///     lua/README.md;
-///                                                   the value is what it returns
+///                                                   lua/README.md; the value is what it returns
 ///     {"do":"watch","path","property"}              {"ok":true,"cycle","time","text","value"}, now and after changes
 ///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: loads a plugin and registers its classes
 ///     {"do":"unload","name":"wind"}                 {"ok":true}

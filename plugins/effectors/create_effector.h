@@ -22,22 +22,19 @@ class CreateEffector : public Effector {
     if (limit_ > 0 && created_ + pending_ >= limit_)
       return limit_ == 1 ? "expected one robot, found a request for another: it has a robot already"
                          : fmt::format("expected at most {} imports, found a request for one more", limit_);
+    if (pending_ == kMostAtOnce)
+      return fmt::format("expected at most {} imports in a cycle, found a request for one more", kMostAtOnce);
     if (scene_.empty()) return "expected a file in its property scene, found none: nothing is created";
     ++pending_;
     return expectNoArguments(action);
   }
 
  protected:
-  void saveState(StateWriter& out) const override {
-    out.write(created_ > 0);
-    out.aside(std::to_string(created_));
-  }
-  void loadState(StateReader& in) override {
-    in.readBool();
-    created_ = std::stoi(in.readString());
-  }
+  void saveState(StateWriter& out) const override { out.write(created_); }
+  void loadState(StateReader& in) override { created_ = static_cast<int>(in.readInteger()); }
 
  private:
+  static constexpr int kMostAtOnce = 16;  // a message has room for thousands
   void prepare(const Event&) {
     const int wanted = std::exchange(pending_, 0);
     const Ref<CreateEffector> self(this);  // what it imports may remove it

@@ -30,14 +30,12 @@ void GameControl::describe(Description<GameControl>& d) {
           "<class>) (name <name>)). Control aspects decide what they get.");
   d.property("requireAll", &GameControl::requireAll_)
       .doc(
-          "An agent takes part only when all that it has asked for before its first percepts is granted; false: it "
-          "takes "
-          "part with what it got.");
+          "An agent takes part only when all that it has asked for before its first percepts is granted; false: "
+          "it takes part with what it got.");
   d.property("byArrival", &GameControl::byArrival_)
       .doc(
           "Agents act in the order in which their messages arrived, as in the plain loop of the papers; false: in "
-          "order of "
-          "their numbers, which repeats.");
+          "order of their numbers, which repeats.");
   d.property("createEffector", &GameControl::createEffector_)
       .doc("Class of the effector with which an agent requests its robot.");
   d.property("expect", &GameControl::expect_)
@@ -637,6 +635,7 @@ List GameControl::senseNow(Node& node) {
     if (const auto view = perceptor->as<ISharedView>()) view->share(round_);
     if (!perceptor) continue;
     perceptor->sense(out, event);
+    if (!perceptor) continue;
     if (const auto modifiers = gamecontrol::ModifierChain::of(*perceptor))
       modifiers->apply({Signal::Kind::percept, out, first}, event, now);
     StateReader then(before.bytes());
@@ -677,6 +676,7 @@ void GameControl::saveState(StateWriter& out) const {
   out.write(agentsSeen_);
   out.write(cyclesToTurn_);
   out.aside(released_ ? "released" : "");
+  if (out.keeps()) out.aside(std::to_string(arrivals_));
   if (out.keeps()) out.aside(refusedPaths());
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
@@ -708,6 +708,7 @@ void GameControl::loadState(StateReader& in) {
   agentsSeen_ = static_cast<int>(in.readInteger());
   cyclesToTurn_ = static_cast<int>(in.readInteger());
   released_ = in.readString() == "released";
+  arrivals_ = std::strtoull(in.readString().c_str(), nullptr, 10);
   refuse(in.readString());
   std::vector<std::unique_ptr<Participant>> restored;
   for (std::size_t n = in.readCount(); n > 0; --n) {

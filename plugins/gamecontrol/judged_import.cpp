@@ -27,8 +27,10 @@ std::string judgeParts(IGameControl& control, const Ref<AgentAspect>& agent, con
   return {};
 }
 
-void removeSince(Node& parent, std::size_t children) {
-  while (parent.children().size() > children) parent.remove(*parent.children().back());
+/// Removes what the import has made, also where a judge has changed the children meanwhile.
+void removeSince(Node& parent, std::uint64_t mark) {
+  for (std::size_t i = parent.children().size(); i-- > 0;)
+    if (Leaf& child = *parent.children()[i]; child.id() > mark) parent.remove(child);
 }
 
 }  // namespace
@@ -44,7 +46,6 @@ std::string importJudged(AgentAspect& agent, Node& parent, const std::string& fi
   if (!asking || !place) return "the place of the new nodes was removed";
 
   const std::uint64_t mark = kernel.lastId();
-  const std::size_t before = parent.children().size();
   std::string why;
   try {
     scenes.importScene(file, parent, arguments);
@@ -52,10 +53,10 @@ std::string importJudged(AgentAspect& agent, Node& parent, const std::string& fi
     if (control && place && why.empty())
       why = judgeParts<Effector>(*control, asking, place, Kind::effector, mark, file);
   } catch (...) {
-    if (place) removeSince(parent, before);
+    if (place) removeSince(parent, mark);
     throw;
   }
-  if (!why.empty() && place) removeSince(parent, before);
+  if (!why.empty() && place) removeSince(parent, mark);
   scenes.markModified();
   return why;
 }

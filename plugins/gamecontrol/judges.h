@@ -24,8 +24,7 @@ class RequestAspect : public ControlAspect, public IAgentJudge {
     d.property("allowed", &R::allowed_)
         .doc(
             "Classes and scene files that are granted, also with (scene <file>); all others are refused. A file that "
-            "is not "
-            "listed needs all its perceptors and effectors listed.");
+            "is not listed needs all its perceptors and effectors listed.");
     d.property("tolerance", &R::tolerance_)
         .min(-1)
         .doc("Refused requests after which an agent's next one disqualifies it; -1: never.");

@@ -125,6 +125,9 @@ std::string RequestQueue::executeControl(const SimulationRequest& request, const
 
   const auto message = nlohmann::json::parse(request.text);  // cannot fail: the I/O thread has parsed it
   const bool isWatch = message.at("do") == "watch";
+  if (message.at("do") == "make" || message.at("do") == "attach")
+    return reply("answer", request.id,
+                 failure("only the owner of the host makes nodes and attaches scripts: by sparkctl"));
   control::Watch watch;
   const std::string line = control->answer(request.text, watch, request.referee && settings.refereeChanges);
   if (!isWatch) return reply("answer", request.id, line);

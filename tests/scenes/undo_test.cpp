@@ -15,10 +15,15 @@ TEST_CASE("the outermost file decides what a file that it imports leaves behind"
   h.folder.write("inner.xml", "<mujoco><worldbody><body><freejoint/></body></worldbody></mujoco>");
   h.folder.write("base.rsg",
                  "(RSG 0 1)((nd Transform (setName t)(importScene inner.rsg)(importScene inner.xml)(nd Sphere)))");
-  CHECK(h.failure("base.rsg").empty());  // the installed base goes on
+  const std::string why = "the import of 'inner.rsg' failed";
+  CHECK_THAT(h.failure("base.rsg"), Catch::Contains(why));
   CHECK(h.place.find("t/kept/RigidBody"));
+  CHECK(h.place.find("t/Sphere"));  // the rest goes on
   h.place.removeChildren();
   h.setTransactional("true");
+  CHECK_THAT(h.failure("base.rsg"), Catch::Contains(why));
+  CHECK(h.place.children().empty());
+  setProperty(*h.kernel.root().find("/sys/server/scene/rsg"), "looseImports", true);  // as the installed base
   CHECK(h.failure("base.rsg").empty());
   CHECK_FALSE(h.place.find("t/kept"));
   CHECK(h.place.find("t/Sphere"));

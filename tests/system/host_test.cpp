@@ -61,7 +61,11 @@ TEST_CASE("--check fails for errors that a run only logs: missing scene files an
   CHECK(whole.code == 0);
   const Finished wheel = check("wheel", scene("rsg/wheel.rsg"));
   CHECK(wheel.code == 2);
-  CHECK_THAT(wheel.errors,
+  CHECK_THAT(wheel.errors, Contains("wheel.lua:3") && Contains("rsg/wheel.rsg:3") && Contains("rsg/weel.rsg"));
+  const Finished loose =
+      check("loose", "get(\"/sys/server/scene/rsg\").looseImports = true\n" + scene("rsg/wheel.rsg"));
+  CHECK(loose.code == 2);
+  CHECK_THAT(loose.errors,
              Contains("rsg/wheel.rsg:3") && Contains("rsg/weel.rsg") && Contains("the check failed: 1 error"));
   const Finished method = check("method", scene("rsg/method.rsg"));
   CHECK(method.code == 2);

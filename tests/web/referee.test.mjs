@@ -93,6 +93,11 @@ test("the referee reads the host's log, which spectators cannot", async (t) => {
   const page = await openPage(t, `${host.url}?panel=host#token=${token}`);
   await part(page, "log-text").waitFor();
   assert.match(await part(page, "log-text").textContent(), /info +Web: http/);
+  for (const request of [{ do: "make", path: "/usr/n", class: "Node" }, { do: "attach", path: "/usr", text: "return 1" }]) {
+    const { ok, error } = await page.evaluate(ask, request);
+    assert.equal(ok, false, request.do);
+    assert.match(error, /only the owner of the host/);
+  }
 
   const spectator = await openPage(t, `${host.url}?panel=host`);
   await until(spectator, "the match", (s) => s.connection === "open" && !s.referee);

@@ -290,7 +290,7 @@ TEST_CASE("Children of the control server can handle additional requests for all
   REQUIRE(f.control->as<IRequests>()->answer(R"({"do":"forecast"})", watch, false) ==
           R"({"ok":true,"sky":" is grey"})");
   REQUIRE(f.ask({{"do", "wether"}})["error"] ==
-          "expected tree, get, set, call, watch, plugins, load, unload, weather, or forecast, found 'wether'");
+          "expected tree, get, set, call, make, attach, watch, plugins, load, unload, weather, or forecast, found 'wether'");
 }
 
 TEST_CASE("Plugins are listed with their classes") {

@@ -1,8 +1,8 @@
--- A missing imported file is reported with both positions, the rest of the outer file is loaded, and --check fails.
+-- A missing imported file is an error with both positions, and --check fails.
 -- exit: 2
 -- expect: rsg/review/outer.rsg:3:
 -- expect: there is no resource 'box.rsg'
--- expect: the check failed: 1 error
+-- expect: missing_import.lua:9: cannot call importScene of /usr/scene
 -- args: --check
 include "house.lua"
 files() scene() physics() simulation()
