@@ -250,6 +250,7 @@ class ControlAspect : public AgentAspect {
     d.property("enabled", &ControlAspect::enabled_).doc("False: the rule has no effect, as if it were not there.");
     d.property("localTransform", &ControlAspect::local).doc("A rule is at the origin of the world.");
     d.property("localPos", &ControlAspect::localPos).unit("m").doc("A rule is at the origin of the world.");
+    d.property("worldTransform", &ControlAspect::worldNow).doc("World 4x4 matrix: that of what the rule is below.");
     d.on<&ControlAspect::run>(phase::kRule);
   }
   /// Applies the rule, once in each cycle while it is enabled.
@@ -264,9 +265,9 @@ class ControlAspect : public AgentAspect {
   virtual void agentLeaving(AgentAspect&) {}
 
  protected:
-  /// A rule stays at the origin of what it is below: its place is no state.
+  /// A rule cannot be moved: its place is no state.
   void saveState(StateWriter&) const override {}
-  void loadState(StateReader&) override { AgentAspect::onLink(); }
+  void loadState(StateReader&) override {}
 
  private:
   void run(const Event& event) { enabled_ ? rule(event) : rest(event); }
@@ -279,8 +280,8 @@ struct PartRequest {
   std::string_view type;  ///< name of the class; of a scene: of the file
   std::string_view name;  ///< of the new node; "" for a scene
   Node& parent;           ///< where the new node is to be: the agent's aspect or a node below it
-  std::string_view
-      file{};  ///< of a part that comes with a scene file: that file; "": the agent asks for the part itself
+  /// Of a part that comes with a scene file: that file; "": the agent asks for the part itself.
+  std::string_view file{};
 };
 
 /// Sees what agents ask for and what they do, and may refuse it. Offered by control aspects; one that is disabled sees

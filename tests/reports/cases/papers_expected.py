@@ -11,7 +11,7 @@ from client import Client, Host, judge
 with Host("--config", "buggy.lua", "--set", "drivers=0", "--sync", "--expect", "1") as host:
     agent = Client(host.ports["agentPort"])
     first = agent.receive()
-    judge(f"it hears {first} before the start", first == "(time (now 0.00))")
+    judge(f"it hears {first} before the start", first.startswith("(time (now 0"))
     heard = []
     for _ in range(30):
         agent.send("(lb 500)(rb 500)(syn)")
