@@ -213,7 +213,7 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
   }
   if (auto* const control = find<IGameControl>(IGameControl::kPath))
     if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent});
-        !why.empty())
+        !why.empty() || !self)
       return why;
   ++parts_;
   parent->create(request.type, request.name);
