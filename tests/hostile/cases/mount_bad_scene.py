@@ -26,7 +26,8 @@ local function judge(good, what) print((good and "right: " or "wrong: ") .. what
 on("rule", function(_, event)
   if event.cycle ~= 50 then return end
   local hit = get("/sys/server/physics"):castRay({ 10, 0, 5 }, { 0, 0, -1 }, 20)
-  judge(hit and math.abs(hit[1] - 4.5) < 1e-5 and hit[2] == "/usr/scene/room/there/good/shape", "the good node is there: " .. tostring(hit and hit[2]))
+  judge(hit and math.abs(hit[1] - 4.5) < 1e-5 and hit[2] == "/usr/scene/room/there/good/shape",
+        "the good node is there: " .. tostring(hit and hit[2]))
   judge(math.abs(ball.localPos[3] - 0.7) < 0.25, "the ball lies on the floor: " .. ball.localPos[3])
   local wild = {}
   local function walk(node)
@@ -42,11 +43,25 @@ on("rule", function(_, event)
 end)
 """
 ONE = [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0]
-BASES = {"Transform": ["BaseNode", "Node", "Leaf"], "SphereCollider": ["Collider", "BaseNode", "Node", "Leaf"], "BoxCollider": ["Collider", "BaseNode", "Node", "Leaf"],
-         "TriMeshCollider": ["ConcaveCollider", "Collider", "BaseNode", "Node", "Leaf"], "ConvexCollider": ["Collider", "BaseNode", "Node", "Leaf"],
-         "HeightFieldCollider": ["ConcaveCollider", "Collider", "BaseNode", "Node", "Leaf"], "ContactJointHandler": ["CollisionHandler", "BaseNode", "Node", "Leaf"],
-         "StaticMesh": ["RenderNode", "BaseNode", "Node", "Leaf"], "Box": ["SingleMatNode", "StaticMesh", "RenderNode", "BaseNode", "Node", "Leaf"],
-         "Light": ["BaseNode", "Node", "Leaf"], "World": ["BaseNode", "Node", "Leaf"], "Strange": ["Transform"], "RigidBody": ["Body", "BaseNode", "Node", "Leaf"], "ScriptBehavior": ["Transform", "BaseNode"]}
+NODE, COLLIDER = ["BaseNode", "Node", "Leaf"], ["Collider", "BaseNode", "Node", "Leaf"]
+BASES = {
+    "Transform": NODE,
+    "SphereCollider": COLLIDER,
+    "BoxCollider": COLLIDER,
+    "ConvexCollider": COLLIDER,
+    "TriMeshCollider": ["ConcaveCollider", *COLLIDER],
+    "HeightFieldCollider": ["ConcaveCollider", *COLLIDER],
+    "ContactJointHandler": ["CollisionHandler", *NODE],
+    "StaticMesh": ["RenderNode", *NODE],
+    "Box": ["SingleMatNode", "StaticMesh", "RenderNode", *NODE],
+    "Light": NODE,
+    "World": NODE,
+    "Strange": ["Transform"],
+    "RigidBody": ["Body", *NODE],
+    "ScriptBehavior": ["Transform", "BaseNode"],
+}
+TURN = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]
+CORNERS = [0.0, 0.0, 50.0, 1.0, 0.0, 50.0]
 NAN, INF, FAR, TINY = float("nan"), float("inf"), 1e308, 1e-320
 
 
@@ -68,18 +83,20 @@ def nodes():
     for number in (NAN, INF, FAR, TINY, -1.0, 1e20):
         yield "SphereCollider", [[], [], [["radius", number]]]
         yield "BoxCollider", [[], [], [["boxLengths", [number, 1.0, 1.0]]]]
-        yield "BoxCollider", [[], [["setLocalPose", [number] + [0.0, 50.0] + [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]]], []]
+        yield "BoxCollider", [[], [["setLocalPose", [number, 0.0, 50.0, *TURN]]], []]
         yield "BoxCollider", [[], [["setLocalPose", [0.0, 0.0, 50.0] + [number] * 9]], []]
-        yield "ConvexCollider", [[], [], [["points", [0.0, 0.0, 50.0, 1.0, 0.0, 50.0, 0.0, 1.0, 50.0, 0.0, 0.0, number]]]]
-        yield "TriMeshCollider", [[], [], [["vertices", [0.0, 0.0, 50.0, 1.0, 0.0, 50.0, 0.0, 1.0, number]], ["triangles", [0, 1, 2]]]]
+        yield "ConvexCollider", [[], [], [["points", [*CORNERS, 0.0, 1.0, 50.0, 0.0, 0.0, number]]]]
+        yield "TriMeshCollider", [[], [], [["vertices", [*CORNERS, 0.0, 1.0, number]], ["triangles", [0, 1, 2]]]]
         yield "TriMeshCollider", [[], [], [["vertices", [0.0, 0.0, 50.0]], ["triangles", [0, 1, 7]]]]
-        yield "HeightFieldCollider", [[], [], [["columns", 2], ["heights", [0.0, 0.0, 0.0, number]], ["size", [number, 1.0, 1.0]]]]
+        heights = ["heights", [0.0, 0.0, 0.0, number]]
+        yield "HeightFieldCollider", [[], [], [["columns", 2], heights, ["size", [number, 1.0, 1.0]]]]
         yield "ContactJointHandler", [[], [], [["contactMu", number], ["contactSoftCFM", number]]]
         yield "Box", [[], [["setScale", [number, 1.0, 1.0]], ["load", ["StdUnitBox", number]]], []]
         yield "Light", [[], [], [["diffuse", [number, 0.0, 0.0, 1.0]], ["radius", number]]]
     yield "TriMeshCollider", [[], [], [["mesh", "/etc/passwd"], ["scale", [0.0, 0.0, 0.0]]]]
     yield "ConvexCollider", [[], [], [["mesh", "../../../../etc/passwd"]]]
-    yield "StaticMesh", [[], [["load", ["/etc/passwd"]], ["resetMaterials", ["m"] * 1000], ["addCollisionHandler", ["ScriptHandler"]]], []]
+    calls = [["load", ["/etc/passwd"]], ["resetMaterials", ["m"] * 1000], ["addCollisionHandler", ["ScriptHandler"]]]
+    yield "StaticMesh", [[], calls, []]
     yield "SphereCollider", "no list"
     yield "SphereCollider", [1, 2, 3]
     yield "SphereCollider", [[], [5, [], ["setLocalPose"]], [7, ["radius"]]]
@@ -108,10 +125,13 @@ class Evil(threading.Thread):
             client.sendall(message("ok", 1, "match"))
             receive(client)  # ready: the run loop runs
             # The same once more, of nodes that are there, and of some that are not.
-            poses = [[10 + n, state[0]] for n, (_, state) in enumerate(all) if state[0:1] and isinstance(state[0], list) and len(state[0]) == 16]
-            looks = [[11 + 2 * n, state[1], state[2]] for n, (_, state) in enumerate(all) if len(state) == 3 and isinstance(state[1], list)]
+            whole = [(11 + 2 * n, state) for n, (_, state) in enumerate(all)
+                     if len(state) == 3 and isinstance(state[1], list)]
+            poses = [[node, state[0]] for node, state in whole if len(state[0]) == 16]
+            looks = [[node, state[1], state[2]] for node, state in whole]
             for n in range(30):
-                client.sendall(message("scene", n + 1, poses + [[10**9, ONE]], looks, [[1, "localPos", [NAN]], [10**9, "x", 1]]))
+                values = [[1, "localPos", [NAN]], [10**9, "x", 1]]
+                client.sendall(message("scene", n + 1, poses + [[10**9, ONE]], looks, values))
             while client.recv(4096):
                 pass
         except (OSError, EOFError):

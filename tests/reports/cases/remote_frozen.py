@@ -45,11 +45,12 @@ on("rule", function(_, event)
   end
 end)
 """
-with Folder() as folder, Served(folder, SERVED) as served, Mounted(folder, served, MOUNTED, "--duration", "60", "--record", folder / "run.mcap") as mounted:
-    for line in mounted.lines():
-        if "stop it" in line:
-            served.process.send_signal(signal.SIGSTOP)
-        elif "let it go on" in line:
-            served.process.send_signal(signal.SIGCONT)
+with Folder() as folder, Served(folder, SERVED) as served:
+    with Mounted(folder, served, MOUNTED, "--duration", "60", "--record", folder / "run.mcap") as mounted:
+        for line in mounted.lines():
+            if "stop it" in line:
+                served.process.send_signal(signal.SIGSTOP)
+            elif "let it go on" in line:
+                served.process.send_signal(signal.SIGCONT)
     code, again, log = verify(folder / "run.mcap")
     judge("the recording is simulated again", code == 0 and again.get("differs", "") is None, f"{code} {again} {log}")

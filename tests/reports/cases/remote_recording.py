@@ -22,7 +22,8 @@ wall.localPos = { 0, 0, 4 }
 wall:new("BoxCollider", "shape"):setBoxLengths(4, 4, 1)
 """
 MOUNTED = """
-local ball, body, world, loop = there:find("ball"), there:find("ball/body"), there:find("world"), get("/sys/server/simulation")
+local ball, body, world = there:find("ball"), there:find("ball/body"), there:find("world")
+local loop = get("/sys/server/simulation")
 loop.step = 0.01
 judge("a value is there while the config runs", body.velocity[3] <= 0 and ball.localPos[1] == 1)
 local own = new("Transform", "/usr/scene/own")
@@ -62,7 +63,8 @@ with Folder() as folder, Served(folder, SERVED) as served:
                 listener.bind(str(served.address))
                 listener.listen()
     code, again, log = verify(folder / "run.mcap")
-    judge("it is the same without the other host", code == 0 and again.get("differs", "") is None and again["cycles"] > 60, f"{code} {again} {log}")
+    same = code == 0 and again.get("differs", "") is None and again["cycles"] > 60
+    judge("it is the same without the other host", same, f"{code} {again} {log}")
     listener.setblocking(False)
     try:
         listener.accept()

@@ -32,7 +32,8 @@ shape.boxLengths = { 5, 1, 1 }
 judge("it is set there", shape.boxLengths[1] == 5)
 """
 with Folder() as folder, Served(folder, SERVED) as served:
-    for what, more, text in (("no physics", "", 'no plugin here has it. Add plugin "physics"'), ("no world", 'plugin "physics"', "expected a World in its scene")):
+    for what, more, text in (("no physics", "", 'no plugin here has it. Add plugin "physics"'),
+                             ("no world", 'plugin "physics"', "expected a World in its scene")):
         (folder / "mounts.lua").write_text(MOUNTS % (more, served.address))
         done = host("--config", folder / "mounts.lua", "--log-level", "info", "--duration", "0.1", cwd=folder)
         for line in done.stderr.splitlines():

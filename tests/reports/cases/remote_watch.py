@@ -51,7 +51,8 @@ near("the distance to nothing", distance() or -1, 10, 0.01)
 crate.localPos = { 3, 0, 1 }
 loop.rate = "real"
 """
-with Folder() as folder, Served(folder, SERVED) as served, Mounted(folder, served, MOUNTED, "--duration", "60") as mounted:
+with (Folder() as folder, Served(folder, SERVED) as served,
+      Mounted(folder, served, MOUNTED, "--duration", "60") as mounted):
     for line in mounted.lines():
         if "Port monitors" in line:
             port = int(line.split(":")[-1].strip().rstrip("."))

@@ -32,7 +32,8 @@ class Served(Live):
     def __init__(self, folder, code):
         self.address = folder / "there.sock"
         (folder / "serves.lua").write_text(SERVES % code)
-        super().__init__("--config", folder / "serves.lua", "--set", f"remoteAddress={self.address}", "--log-level", "warning")
+        super().__init__("--config", folder / "serves.lua", "--set", f"remoteAddress={self.address}",
+                         "--log-level", "warning")
 
     def __enter__(self):
         return self
@@ -46,9 +47,11 @@ class Mounted:
     """A host that mounts the scene of `served` below a room and judges."""
 
     def __init__(self, folder, served, code, *arguments, **more):
-        (folder / "mounts.lua").write_text(MOUNTS % (Path(__file__).resolve().parent / "judge.lua", served.address, code))
-        self.process = subprocess.Popen([str(a) for a in (BIN / "sparkhost", "--config", folder / "mounts.lua", "--log-level", "info", *arguments)],
-                                        stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace", **more)
+        judges = Path(__file__).resolve().parent / "judge.lua"
+        (folder / "mounts.lua").write_text(MOUNTS % (judges, served.address, code))
+        command = (BIN / "sparkhost", "--config", folder / "mounts.lua", "--log-level", "info", *arguments)
+        self.process = subprocess.Popen([str(a) for a in command], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+                                        text=True, errors="replace", **more)
 
     def __enter__(self):
         return self
@@ -67,7 +70,8 @@ class Mounted:
                     print(line[line.index(verdict):], end="")
             yield line
         code = self.process.wait()
-        judge("the host that mounts ends with 0", code == 0 and any("right: the end" in line for line in log), f"{code} {''.join(log)}")
+        complete = any("right: the end" in line for line in log)
+        judge("the host that mounts ends with 0", code == 0 and complete, f"{code} {''.join(log)}")
 
 
 def mounted(folder, served, code, *arguments):
