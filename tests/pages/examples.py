@@ -97,6 +97,8 @@ def png(size):
     return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", size, size, 8, 0, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
+SERVED = ["--config", "soccer-sphere.lua", "--set", "remoteAddress=127.0.0.1:3400", "--set",
+          "remoteToken=0123456789abcdef", "--web-port", "0"]
 CONTEXT = {
     "README.md lua 1": Context(WORLD + 'delete "/sys/server/physics/engine"\n'),
     "lua/README.md lua 2": Context(WORLD),
@@ -125,8 +127,8 @@ CONTEXT = {
     "plugins/physics/README.md lua 3": Context('include "house.lua" scene() physics() simulation()\n', replace={"/home/me/scenes": "."},
                                                files={"models/stairs.stl": STL, "models/seat.obj": OBJ, "models/hills.png": png(17)}),
     "plugins/remote/README.md lua 1": Context(arguments=["--set", "remoteAddress=127.0.0.1:3401"]),
-    "plugins/remote/README.md lua 2": Context('include "house.lua" simulation()\n', host=["--config", "soccer-sphere.lua", "--set", "remoteAddress=127.0.0.1:3400", "--set",
-                                              "remoteToken=0123456789abcdef", "--web-port", "0"]),
+    "plugins/remote/README.md lua 2": Context('include "house.lua" simulation()\n', host=SERVED),
+    "plugins/remote/README.md lua 3": Context(WORLD + 'new("Transform", "/usr/scene/room")\n', host=SERVED),
     "plugins/scene-meshes/README.md lua 1": Context(files={"models/chair.obj": OBJ}, arguments=["--scene-path", "."]),
     "plugins/scene-rsg/README.md lua 2": Context(WORLD),
     "plugins/scene-rsg/README.md lisp 1": Context(arguments=[0.1]),
