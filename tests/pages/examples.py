@@ -128,7 +128,8 @@ CONTEXT = {
                                                files={"models/stairs.stl": STL, "models/seat.obj": OBJ, "models/hills.png": png(17)}),
     "plugins/remote/README.md lua 1": Context(arguments=["--set", "remoteAddress=127.0.0.1:3401"]),
     "plugins/remote/README.md lua 2": Context('include "house.lua" simulation()\n', host=SERVED),
-    "plugins/remote/README.md lua 3": Context(WORLD + 'new("Transform", "/usr/scene/room")\n', host=SERVED),
+    "plugins/remote/README.md lua 3": Context('include "house.lua" files() scene() physics() simulation()\n'
+                                              'new("Transform", "/usr/scene/room")\n', host=SERVED),
     "plugins/scene-meshes/README.md lua 1": Context(files={"models/chair.obj": OBJ}, arguments=["--scene-path", "."]),
     "plugins/scene-rsg/README.md lua 2": Context(WORLD),
     "plugins/scene-rsg/README.md lisp 1": Context(arguments=[0.1]),
