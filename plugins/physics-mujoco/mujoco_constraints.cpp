@@ -128,7 +128,6 @@ void MujocoTendon::describe(Description<MujocoTendon>& d) {
   d.property("range", &T::get<&N::range>, &T::set<&N::range>).doc("Least and largest length.");
   d.property("margin", &T::get<&N::margin>, &T::set<&N::margin>)
       .unit("m or rad")
-      .min(0)
       .doc("Distance from a limit at which it begins to act.");
   const char *const solref = "Time constant [s] and damping ratio of {}.",
                     *const solimp = "Impedance of {}: fractions from and to, width, midpoint, power.";

@@ -20,11 +20,8 @@ void MujocoSurface::describe(Description<MujocoSurface>& d) {
       .doc("Time constant [s] and damping ratio of contacts; or, negative, stiffness and damping.");
   d.property("solimp", &S::get<&N::solimp>, &S::set<&N::solimp>)
       .doc("Impedance of contacts: fractions from and to, width [m], midpoint, power.");
-  d.property("margin", &S::get<&N::margin>, &S::set<&N::margin>)
-      .unit("m")
-      .min(0)
-      .doc("Distance at which contacts begin.");
-  d.property("gap", &S::get<&N::gap>, &S::set<&N::gap>).unit("m").min(0).doc("Part of that distance without force.");
+  d.property("margin", &S::get<&N::margin>, &S::set<&N::margin>).unit("m").doc("Distance at which contacts begin.");
+  d.property("gap", &S::get<&N::gap>, &S::set<&N::gap>).unit("m").doc("Part of that distance without force.");
   d.property("solmix", &S::get<&N::solmix>, &S::set<&N::solmix>)
       .unit("1")
       .min(0)
@@ -62,7 +59,6 @@ void MujocoAxis::describe(Description<MujocoAxis>& d) {
       .doc(fmt::format(fmt::runtime(solimp), stops));
   d.property("stopMargin", &A::get<&N::stopMargin>, &A::set<&N::stopMargin>)
       .unit("rad or m")
-      .min(0)
       .doc("Distance from a stop at which it begins to act.");
   d.property("frictionSolref", &A::get<&N::frictionSolref>, &A::set<&N::frictionSolref>)
       .doc(fmt::format(fmt::runtime(solref), friction));

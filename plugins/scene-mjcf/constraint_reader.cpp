@@ -52,10 +52,9 @@ void ConstraintReader::tendon(const Element& e, const std::vector<Element>& part
   t.name = a.text("name");
   t.spatial = e.tag() == "spatial";
   for (const auto& [name, value] : {std::pair{"stiffness", &t.stiffness}, std::pair{"damping", &t.damping},
-                                    std::pair{"frictionloss", &t.frictionLoss}, std::pair{"margin", &t.margin}}) {
-    *value = a.number(name, 0);
-    if (*value < 0) throw e.error(fmt::format("expected '{}' of 0 or more, found {}", name, *value));
-  }
+                                    std::pair{"frictionloss", &t.frictionLoss}})
+    *value = a.within(name, 0, 0);
+  t.margin = a.number("margin", 0);
   t.springLength = a.number("springlength", -1);
   Limit limit;
   limit.read(a, "limited", "range");

@@ -117,6 +117,10 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
   g.group = a.integer("group", 0);
   ContactNumbers& m = g.contact;
   a.fill("friction", m.friction);
+  if (std::any_of(m.friction.begin(), m.friction.end(), [](double f) { return f < 0; })) {
+    a.note("'friction' of <geom> below 0 is taken as 0");
+    for (double& f : m.friction) f = std::max(f, 0.0);
+  }
   m.condim = a.integer("condim", 3);
   if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)
     throw g.from.error(fmt::format("expected 1, 3, 4 or 6 for 'condim', found {}", m.condim));
@@ -125,7 +129,7 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
   a.fill("solimp", m.solimp);
   m.margin = a.number("margin", 0);
   m.gap = a.number("gap", 0);
-  m.solmix = a.number("solmix", 1);
+  m.solmix = a.within("solmix", 1, 0);
   m.ellipsoidDrag = a.word("fluidshape", {"none", "ellipsoid"}, "none") == "ellipsoid";
   a.fill("fluidcoef", m.dragCoefficients);
 }

@@ -11,23 +11,38 @@ void readOption(Attributes& a, Model& model, Unsupported& unsupported) {
   const auto set = [&](const char* property, Value v, bool ofMujoco = true) {
     model.options.push_back({e, property, std::move(v), ofMujoco});
   };
-  const auto number = [&](const char* name, double least, bool ofMujoco = true) {
+  const auto number = [&](const char* name, double most, const char* property) {
+    if (a.has(name)) set(property, a.within(name, 0, 0, most));
+  };
+  // MuJoCo has no contacts with an impratio of 0 or less, and no time or one that runs backwards with such a timestep.
+  const auto positive = [&](const char* name, double least, bool ofMujoco) {
     if (!a.has(name)) return;
     const double v = a.number(name, 0);
-    if (v < least) throw e.error(fmt::format("expected at least {} for '{}' of <option>, found {}", least, name, v));
-    set(name, v, ofMujoco);
+    if (v >= least) return set(name, v, ofMujoco);
+    a.note(fmt::format("'{}' of <option> is ignored: expected {} or more, found {}", name, least, v));
+  };
+  const auto count = [&](const char* name, int least, const char* property) {
+    constexpr int kMost = 10000;
+    if (!a.has(name)) return;
+    const int n = a.integer(name, least);
+    if (n > kMost) a.note(fmt::format("'{}' of <option> is taken as {}, found {}", name, kMost, n));
+    set(property, std::clamp(n, least, kMost));
   };
   const auto vector = [&](const char* name, bool ofMujoco) {
     if (Vec3 v = Vec3::Zero(); a.take(name, v)) set(name, List{v.x(), v.y(), v.z()}, ofMujoco);
   };
   vector("gravity", false);
   vector("wind", true);
-  number("timestep", 1e-6, false);
-  number("tolerance", 0);
-  number("impratio", 1e-6);
-  number("density", 0);
-  number("viscosity", 0);
-  if (a.has("iterations")) set("iterations", std::max(1, a.integer("iterations", 100)));
+  positive("timestep", 1e-6, false);
+  positive("impratio", 1e-6, true);
+  number("tolerance", 1, "tolerance");
+  number("density", HUGE_VAL, "density");
+  number("viscosity", HUGE_VAL, "viscosity");
+  number("noslip_tolerance", 1, "noslipTolerance");
+  number("mpr_tolerance", 1, "mprTolerance");
+  count("iterations", 1, "iterations");
+  count("noslip_iterations", 0, "noslipIterations");
+  count("mpr_iterations", 1, "mprIterations");
   if (a.has("cone")) set("cone", a.word("cone", {"pyramidal", "elliptic"}, ""));
   if (a.has("solver")) set("solver", a.word("solver", {"PGS", "CG", "Newton"}, ""));
   if (a.has("integrator")) {
@@ -37,10 +52,6 @@ void readOption(Attributes& a, Model& model, Unsupported& unsupported) {
       unsupported.add(e, fmt::format("the integrator {} is not supported; {} is used in its place", wanted, taken));
     set("integrator", taken);
   }
-  if (a.has("noslip_iterations")) set("noslipIterations", std::max(0, a.integer("noslip_iterations", 0)));
-  if (a.has("mpr_iterations")) set("mprIterations", std::max(1, a.integer("mpr_iterations", 50)));
-  if (a.has("noslip_tolerance")) set("noslipTolerance", a.number("noslip_tolerance", 0));
-  if (a.has("mpr_tolerance")) set("mprTolerance", a.number("mpr_tolerance", 0));
   if (a.has("o_margin")) set("overrideMargin", a.number("o_margin", 0));
   const auto numbers = [&](const char* name, const char* property, auto values) {
     if (!a.has(name)) return;

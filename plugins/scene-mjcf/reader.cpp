@@ -284,16 +284,10 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
     j.limited = true;
     j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
   }
-  j.armature = a.number("armature", 0);
-  j.damping = a.number("damping", 0);
-  j.dryFriction = a.number("frictionloss", 0);
-  j.stiffness = a.number("stiffness", 0);
-  for (const auto& [name, value] : {std::pair{"armature", &j.armature}, std::pair{"damping", &j.damping},
-                                    std::pair{"frictionloss", &j.dryFriction}, std::pair{"stiffness", &j.stiffness}})
-    if (*value < 0) {
-      unsupported_.add(e, fmt::format("the attribute '{}' of <joint> below 0 is not supported", name));
-      *value = 0;
-    }
+  j.armature = a.within("armature", 0, 0);
+  j.damping = a.within("damping", 0, 0);
+  j.dryFriction = a.within("frictionloss", 0, 0);
+  j.stiffness = a.within("stiffness", 0, 0);
   j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
   if (j.kind == JointKind::hinge || j.kind == JointKind::slide) readSpringDamper(a, j);
   if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {

@@ -3,9 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
+#include <set>
 
 #include "actuator_builder.h"
 #include "api/agents.h"
+#include "api/engine.h"
+#include "api/extension.h"
 #include "body_builder.h"
 #include "constraint_builder.h"
 #include "construction.h"
@@ -37,6 +41,16 @@ bool hasBelow(const Node& node, std::string_view className) {
     const Node* const inner = child->asNode();
     return child->classObject()->name() == className || (inner && hasBelow(*inner, className));
   });
+}
+
+/// Says that the engine of the physics server does not read an extension; "": there is none, it reads it, or the
+/// extension asks for nothing.
+std::string withoutEffect(const engine::IExtension& e, const Leaf& node) {
+  const Leaf* const server = node.kernel().root().find(IPhysicsServer::kPath);
+  auto* const engine = server ? server->asNode()->childOf<engine::IEngine>() : nullptr;
+  const std::string written = e.writtenAs();
+  if (!engine || engine->reads(e.kind()) || written.empty()) return "";
+  return fmt::format("{}: {} has no effect with {}", node.path(), written, engine->leaf().classObject()->name());
 }
 
 /// The robot of an agent can say that it has answered, so that lockstep waits for it, and senses the time.
@@ -72,13 +86,27 @@ void Builder::build(Node& root) {
       unsupported_.add(model_.options.front().from,
                        "the options of an attached model are ignored: the world has its own");
     if (prefix_.empty()) compareTimesteps(root);
-    if (const auto left = unsupported_.sentences(); strict_ && !left.empty())
-      throw Error(fmt::format("{}", fmt::join(left, "; ")));
+    if (strict_) refuseLosses(top);
     if (prefix_.empty()) setOptions(root);
   } catch (...) {
     root.remove(top);
     throw;
   }
+}
+
+/// Throws Error if something is left out, is changed, or has no effect with the engine.
+void Builder::refuseLosses(Node& top) const {
+  std::vector<std::string> losses = unsupported_.sentences();
+  std::set<std::uint64_t> known;  // kinds
+  const std::function<void(const Leaf&)> visit = [&](const Leaf& leaf) {
+    const engine::IExtension* const e = leaf.as<engine::IExtension>();
+    if (std::string text = e ? withoutEffect(*e, leaf) : ""; !text.empty() && known.insert(e->kind()).second)
+      losses.push_back(std::move(text));
+    if (const Node* const node = leaf.asNode())
+      for (const auto& child : node->children()) visit(*child);
+  };
+  visit(top);
+  if (!losses.empty()) throw Error(fmt::format("{}", fmt::join(losses, "; ")));
 }
 
 /// A cycle has a whole number of steps, so their length may differ from that of the file.
@@ -118,10 +146,14 @@ void Builder::setOptions(Node& root) {
     Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
     if (!node) continue;
     if (scenes) scenes->willChange(*node);
-    if (o.ofMujoco) setWritten(*node, o.from.placed());
     try {
       before.push_back({node, o.property, getProperty(*node, o.property)});
       setProperty(*node, o.property, o.value);
+      // What is so anyway is nothing lost.
+      if (!o.ofMujoco || getProperty(*node, o.property) == before.back().value) continue;
+      setWritten(*node, o.from.placed());
+      const std::string text = withoutEffect(*node->as<engine::IExtension>(), *node);
+      if (strict_ && !text.empty()) throw Error(text);
     } catch (const Error& e) {
       for (auto old = before.rbegin(); old != before.rend(); ++old) setProperty(*old->node, old->property, old->value);
       throw Error(o.from.where() + ": cannot set an option", e);

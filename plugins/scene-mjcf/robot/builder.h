@@ -23,6 +23,7 @@ class Builder {
   bool withoutParts() const { return withoutParts_; }
 
  private:
+  void refuseLosses(Node& top) const;
   void setOptions(Node& root);
   void compareTimesteps(Node& root);
 

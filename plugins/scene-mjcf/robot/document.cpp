@@ -282,6 +282,14 @@ double Attributes::number(const char* name, double otherwise) {
   return found ? found->front() : otherwise;
 }
 
+double Attributes::within(const char* name, double otherwise, double least, double most) {
+  const double v = number(name, otherwise), taken = std::clamp(v, least, most);
+  if (v != taken)
+    note(fmt::format("'{}' of <{}> is taken as {}: expected {} to {}, found {}", name, element_.tag(), taken, least,
+                     most, v));
+  return taken;
+}
+
 int Attributes::integer(const char* name, int otherwise) {
   const double v = number(name, otherwise);
   if (std::abs(v) > 1e9)

@@ -2,6 +2,7 @@
 /// \file
 /// MJCF files: elements with their places, attributes with their defaults, included files.
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <memory>
@@ -145,6 +146,8 @@ class Attributes {
   std::string word(const char* name, std::initializer_list<const char*> words, const char* otherwise);
   bool flag(const char* name, bool otherwise);
   double number(const char* name, double otherwise);
+  /// One below `least` or above `most` becomes that, which is named.
+  double within(const char* name, double otherwise, double least, double most = HUGE_VAL);
   /// One that is not whole loses its fraction, which is named. Throws Error.
   int integer(const char* name, int otherwise);
   /// Between `least` and `most` finite numbers; nullopt where the attribute is not there. Throws Error.

@@ -79,9 +79,12 @@ void setSurface(Node& collider, const engine::Mesh& surface) {
 
 /// True if a surface has no numbers but those that act with every engine.
 bool isPlain(ContactNumbers m) {
-  m.friction[0] = ContactNumbers().friction[0];
+  const ContactNumbers usual;
+  m.friction[0] = usual.friction[0];
+  // Torsional and rolling friction act from four dimensions on; one dimension is a contact without friction.
+  if (m.condim <= 3) m.friction = usual.friction, m.condim = usual.condim;
   m.priority = 0;
-  return m == ContactNumbers();
+  return m == usual;
 }
 
 void setContact(Node& collider, const Geom& g) {

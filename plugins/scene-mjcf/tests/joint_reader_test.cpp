@@ -56,9 +56,19 @@ TEST_CASE("a limit needs a range, and options are checked") {
   CHECK_THAT(failure(world("<body><joint limited='true'/></body>")),
              Catch::StartsWith("a.xml:1:26: expected a lower and a higher number for 'range'"));
   CHECK_THAT(failure(world("<body><joint range='2 1'/></body>")), Catch::StartsWith("a.xml:1:26: expected a lower"));
-  CHECK_THAT(failure("<mujoco><option density='-1'/></mujoco>"),
-             Catch::StartsWith("a.xml:1:9: expected at least 0 for 'density'"));
+  CHECK(Read("<mujoco><option density='-1' timestep='0' impratio='-1'/></mujoco>").model.options.size() == 1);
   CHECK(Read("<mujoco><option gravity='0 0 -9'/></mujoco>").model.options.size() == 1);
+}
+
+TEST_CASE("options that no simulation can have are ignored or bounded, and named") {
+  const auto of = [](const std::string& option) { return named("<mujoco><option " + option + "/></mujoco>"); };
+  CHECK_THAT(of("timestep='0'"), Catch::Contains("'timestep' of <option> is ignored: expected 1e-06 or more, found 0"));
+  CHECK_THAT(of("timestep='-0.01'"), Catch::Contains("is ignored"));
+  CHECK_THAT(of("impratio='0'"), Catch::Contains("'impratio' of <option> is ignored"));
+  CHECK_THAT(of("viscosity='-1'"), Catch::Contains("'viscosity' of <option> is taken as 0"));
+  CHECK_THAT(of("tolerance='-1'"), Catch::Contains("'tolerance' of <option> is taken as 0"));
+  CHECK_THAT(of("iterations='20000'"), Catch::Contains("'iterations' of <option> is taken as 10000, found 20000"));
+  CHECK(of("density='1.2' iterations='-1' o_margin='-1'").empty());
 }
 
 TEST_CASE("limits are checked once all default classes are applied") {

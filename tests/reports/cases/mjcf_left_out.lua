@@ -23,7 +23,7 @@
 -- expect: mjcf_left_out.xml:34:5: <connect> 'pin' is left out: expected an attribute 'anchor'
 -- expect: mjcf_left_out.xml:35:5: <tendon> 'tied' is left out: there is no tendon 'rope'
 -- expect: mjcf_left_out.xml:38:5: <spatial> 'rope' is left out: mjcf_left_out.xml:38:26: there is no site 'mark'
--- expect: mjcf_left_out.xml:39:5: <fixed> 'wire' is left out: expected 'damping' of 0 or more, found -1
+-- expect: mjcf_left_out.xml:39:5: <fixed> 'wire' is left out: expected a lower and a higher number for 'range'
 -- expect: mjcf_left_out.xml:42:5: <motor> 'lift' is left out: there is no joint 'nothing' to act on
 -- expect: mjcf_left_out.xml:43:5: <motor> 'pull' acts on a tendon that is left out
 -- expect: mjcf_left_out.xml:44:5: <motor> 'bend' is left out: expected a lower and a higher number for 'ctrlrange'
