@@ -14,7 +14,6 @@
 #include "api/scene.h"
 #include "spark/error.h"
 #include "spark/in_use.h"
-#include "spark/other_code.h"
 #include "spark/output_file.h"
 #include "spark/script.h"
 #include "spark/script_text.h"
@@ -163,7 +162,7 @@ Json plugins(Kernel& kernel) {
 
 Json load(Kernel& kernel, const Json& request) {
   const std::string& name = textOf(request, "name");
-  if (const Plugin& p = kernel.plugins().use(name); hasOtherCode(p)) {
+  if (const Plugin& p = kernel.plugins().use(name); p.hasOtherCode()) {
     const std::string file = p.file();
     try {
       kernel.plugins().unload(name);

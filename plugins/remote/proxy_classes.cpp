@@ -7,7 +7,7 @@
 #include "messages.h"
 #include "remote_node.h"
 #include "scene_feed.h"
-#include "spark/make_as_base.h"
+#include "spark/class_description.h"
 #include "wire.h"
 
 namespace spark::remote {

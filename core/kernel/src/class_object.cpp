@@ -9,7 +9,6 @@
 
 #include "spark/error.h"
 #include "spark/kernel.h"
-#include "spark/make_as_base.h"
 #include "spark/running.h"
 #include "tree.h"
 
@@ -245,20 +244,9 @@ std::vector<const Method*> ClassObject::methods() {
   return overridden(base() ? base()->methods() : std::vector<const Method*>(), description_.methods);
 }
 
-const std::vector<const Hook*>& ClassObject::hooks() {
-  resolve();
-  return hooks_;
-}
-
-const std::vector<const LinkDescription*>& ClassObject::links() {
-  resolve();
-  return links_;
-}
-
-const std::vector<const Property*>& ClassObject::stateProperties() {
-  resolve();
-  return stateProperties_;
-}
+const std::vector<const Hook*>& ClassObject::hooks() { return resolve(), hooks_; }
+const std::vector<const LinkDescription*>& ClassObject::links() { return resolve(), links_; }
+const std::vector<const Property*>& ClassObject::stateProperties() { return resolve(), stateProperties_; }
 
 Value ClassObject::defaultOf(const Property& property) { return isAbstract() ? Value() : property.get(*create()); }
 

@@ -12,7 +12,6 @@
 #include "loaded_library.h"
 #include "spark/error.h"
 #include "spark/kernel.h"
-#include "spark/other_code.h"
 #include "spark/running.h"
 #include "tree.h"
 
@@ -308,7 +307,7 @@ Plugin* Loader::openAgain(std::string_view name) {
   return nullptr;
 }
 
-bool hasOtherCode(const Plugin& plugin) { return LoadedLibrary::hasChanged(plugin.file()); }
+bool Plugin::hasOtherCode() const { return LoadedLibrary::hasChanged(file_); }
 
 Plugin& Loader::useFile(const fs::path& file) {
   Plugin* known = fromFile(file);

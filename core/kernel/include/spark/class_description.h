@@ -84,4 +84,8 @@ struct ClassDescription {
   std::unique_ptr<Leaf> (*make)() = nullptr;  ///< constructs an object; nullptr if the class is abstract
 };
 
+/// For ClassDescription::make: objects of the class are made as those of its base, and the class only describes them in
+/// another way. Not to be called.
+std::unique_ptr<Leaf> makeAsBase();
+
 }  // namespace spark

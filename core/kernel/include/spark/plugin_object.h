@@ -31,6 +31,8 @@ class Plugin : public Leaf {
   const std::vector<std::string>& classes() const { return classes_; }
   /// True if its classes are registered.
   bool registered() const { return registered_; }
+  /// True if its file has other code by now than the one that was loaded from it.
+  bool hasOtherCode() const;
 
  private:
   friend class Loader;
