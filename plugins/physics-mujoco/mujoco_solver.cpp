@@ -5,8 +5,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 
+#include "api/physics.h"
 #include "mjcf_constraints.h"
 #include "mujoco_engine.h"
 
@@ -60,6 +62,29 @@ std::string pathOfConstraint(const Node& node, int number) {
   return "";
 }
 
+/// The path of the body or collider that has the id `identity` in its world; "" if there is none.
+template <class T>
+std::string pathOf(Node& root, std::uint64_t identity) {
+  std::vector<T*> all;
+  root.collect(all);
+  for (T* object : all)
+    if (object->identity() == identity) return object->leaf().path();
+  return "";
+}
+
+/// The path of the node of which a text of MuJoCo's compiler speaks, which knows bodies as b0, geoms as g0 and meshes
+/// as m0 (mjcf.h); "" if it speaks of none.
+std::string nodeIn(const std::string& text, const engine::Model& model, Node& root) {
+  constexpr std::string_view kBefore = "Object name = ";
+  const std::size_t at = text.find(kBefore);
+  if (at == std::string::npos) return "";
+  const char* const name = text.c_str() + at + kBefore.size();
+  engine::Index index = 0;
+  if (std::from_chars(name + 1, text.c_str() + text.size(), index).ec != std::errc()) return "";
+  if (*name == 'b') return index < model.bodies.size() ? pathOf<IRigidBody>(root, model.bodies[index].id) : "";
+  return index < model.geoms.size() ? pathOf<ICollider>(root, model.geoms[index].id) : "";
+}
+
 }  // namespace
 
 void MujocoSolver::compile(const engine::Model& model, const engine::State& state) {
@@ -104,7 +129,7 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
     if (before) world_->takeActivations(*before);
     poses_ = posesOf(state);
   } catch (const Error& e) {
-    refuse(e.what());
+    refuse(e.what(), &model);
   }
 }
 
@@ -167,17 +192,18 @@ void MujocoSolver::takePending(const engine::Model& model) {
     begin(model, std::move(*p.trees), p.compiled.get());
     poses_ = std::move(p.poses);
   } catch (const Error& e) {
-    refuse(e.what());
+    refuse(e.what(), &model);
   }
   p = {};
 }
 
-/// The log says so once; nothing moves until the model is another one.
-void MujocoSolver::refuse(const std::string& why) {
+/// The log says so once; nothing moves until the model is another one. `model`: that of which `why` speaks.
+void MujocoSolver::refuse(const std::string& why, const engine::Model* model) {
   world_.reset();
-  if (std::exchange(refused_, why) != why)
-    engine_.kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}", engine_.path(),
-                                 why);
+  if (std::exchange(refused_, why) == why) return;
+  const std::string node = model ? nodeIn(why, *model, engine_.kernel().root()) : std::string();
+  engine_.kernel().log().error("{}: MuJoCo does not take this world, so nothing in it moves: {}{}{}", engine_.path(),
+                               node, node.empty() ? "" : ": ", why);
 }
 
 void MujocoSolver::detect(const engine::Model& model, const engine::State& state, engine::PairFilter filter,

@@ -49,7 +49,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   void abandon();
   /// After a step: the model that was compiled aside takes over when its time has come.
   void takePending(const engine::Model& model);
-  void refuse(const std::string& why);
+  void refuse(const std::string& why, const engine::Model* model = nullptr);
   /// Logs the constraints that are left out and were not before.
   void reportSkipped(const Constraints& constraints);
 

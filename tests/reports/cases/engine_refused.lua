@@ -1,0 +1,22 @@
+-- row: 2
+-- input: MuJoCo's compiler takes no body of 2e-15 kg
+-- right: the log names the body, and the host lives
+-- engines: MujocoEngine
+-- args: --duration 0.5
+-- expect: MuJoCo does not take this world
+-- expect: /usr/scene/feather/body: MuJoCo:
+include "../lib/judge.lua"
+include "house.lua"
+files() scene() physics(engineOption()) simulation()
+local function crate(name, x, mass)
+  local place = new("Transform", "/usr/scene/" .. name)
+  place.localPos = { x, 0, 5 }
+  place:new("RigidBody", "body"):setBoxTotal(mass, 0.4, 0.4, 0.4)
+  place:new("BoxCollider", "box"):setBoxLengths(0.4, 0.4, 0.4)
+  return place
+end
+local stone = crate("stone", 0, 1)
+crate("feather", 2, 2e-15)
+on("sense", function(_, event)
+  if event.cycle == 20 then near("the height of the stone, in a world that stands still", stone.position[3], 5, 0) end
+end)
