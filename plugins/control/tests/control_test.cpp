@@ -10,7 +10,9 @@
 #include <boost/asio/streambuf.hpp>
 #include <boost/asio/write.hpp>
 #include <catch2/catch.hpp>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "api/phases.h"
 #include "fake_tape.h"
@@ -277,6 +279,33 @@ TEST_CASE("Clients of other servers may get and watch, and need rights to set or
   REQUIRE(ask({{"do", "tree"}, {"path", "/sys"}}, false)["ok"] == true);
 }
 
+TEST_CASE("Each request is either for all who watch, or for the referee alone") {
+  Fixture f;
+  f.host.kernel.registerClass<Weatherman>();
+  f.host.kernel.create<Weatherman>("Weatherman", "/sys/server/control/weather");
+  auto& requests = *f.control->as<IRequests>();
+  control::Watch watch;
+  const auto errorOf = [&](const std::string& what) {
+    return Json::parse(requests.answer(Json{{"do", what}}.dump(), watch, false)).value("error", "");
+  };
+  // Whether it changes something. A request that the server knows has a row here.
+  const std::map<std::string, bool> table{{"tree", false}, {"get", false},   {"set", true},      {"call", true},
+                                          {"make", true},  {"attach", true}, {"watch", false},   {"plugins", false},
+                                          {"load", true},  {"unload", true}, {"weather", false}, {"forecast", false}};
+  std::string known = errorOf("nothing");
+  known = known.substr(known.find(' ') + 1, known.rfind(", found ") - known.find(' ') - 1);
+  known.erase(known.find("or "), 3);
+  std::istringstream words(known);
+  std::size_t count = 0;
+  for (std::string word; words >> word; ++count) {
+    if (word.ends_with(',')) word.pop_back();
+    CAPTURE(word);
+    REQUIRE(table.contains(word));
+    CHECK((errorOf(word).find("only the referee may") != std::string::npos) == table.at(word));
+  }
+  CHECK(count == table.size());
+}
+
 TEST_CASE("Children of the control server can handle additional requests for all clients") {
   Fixture f;
   f.connect();
@@ -290,7 +319,8 @@ TEST_CASE("Children of the control server can handle additional requests for all
   REQUIRE(f.control->as<IRequests>()->answer(R"({"do":"forecast"})", watch, false) ==
           R"({"ok":true,"sky":" is grey"})");
   REQUIRE(f.ask({{"do", "wether"}})["error"] ==
-          "expected tree, get, set, call, make, attach, watch, plugins, load, unload, weather, or forecast, found 'wether'");
+          "expected tree, get, set, call, make, attach, watch, plugins, load, unload, weather, or forecast, found "
+          "'wether'");
 }
 
 TEST_CASE("Plugins are listed with their classes") {
