@@ -39,6 +39,7 @@ test("any node can be reached in the tree, and numbers can be plotted", async (t
   await part(page, "inspector-filter").fill("GameStateAspect");
   await page.locator('[data-testid="tree-item"][data-path="/sys/server/gamecontrol/GameStateAspect"]').click();
   const time = property(page, "time");
+  await time.scrollIntoViewIfNeeded();  // a property is watched while it can be seen
   const shown = `Number.parseFloat(document.querySelector('[data-property="time"] [data-testid="property-value"]')?.textContent)`;
   await until(page, "the time", `() => ${shown} >= 0`);
   await until(page, "that time advances", `(_, before) => ${shown} > before`, await page.evaluate(shown));
