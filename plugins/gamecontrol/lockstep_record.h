@@ -23,10 +23,10 @@ class LockstepRecord {
   }
   /// A turn begins: no percepts have arrived at the agent.
   void beginTurn() { asked_ = told_ = 0; }
-  /// Percepts have arrived, in a number of messages. None were sent if they are empty, or the client does not read; a
-  /// bound agent owes an answer all the same.
-  void ask(int messages) {
-    asked_ = std::max(asked_ + messages, 1);
+  /// Percepts have arrived: that many messages were sent, and that many dropped because the client does not read. A
+  /// bound agent owes an answer to the latter, too. Percepts that are empty are no message and owe none.
+  void ask(int messages, int dropped) {
+    asked_ = std::max(asked_ + messages, dropped > 0 ? 1 : 0);
     told_ += messages;
   }
   /// The actions of a turn are executed: answers to it have not come yet.

@@ -260,7 +260,7 @@ int Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point no
   const std::int64_t before = sent_;
   for (; percepts_.hasArrived(cycle); percepts_.pop(), encoded_ = false)
     if (!deliverFirst(log, cycle, now, tape)) ++dropped;
-  lockstep_.ask(static_cast<int>(sent_ - before));
+  lockstep_.ask(static_cast<int>(sent_ - before), dropped);
   return dropped;
 }
 
