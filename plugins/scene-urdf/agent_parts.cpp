@@ -25,16 +25,28 @@ void AgentParts::drives() {
   for (const Element& t : childrenOf(root_)) {
     if (t.tag() != "transmission") continue;
     any = true;
+    const auto leaveOut = [&](const Element& at, const std::string& why) {
+      unsupported_.add(at, fmt::format("the {} is left out: {}", t.named(), why));
+    };
+    if (!childOf(t, "joint")) leaveOut(t, "expected an element <joint>");
     for (const Element& e : childrenOf(t)) {
       if (e.tag() != "joint") continue;
-      const std::string name = nameOf(e);
+      const std::string name(textOf(e, "name"));
       if (!joints.contains(name)) {
-        unsupported_.add(e, fmt::format("the {} is left out: there is no joint '{}'", t.named(), name));
+        leaveOut(
+            e, name.empty() ? "expected an attribute 'name' of <joint>" : fmt::format("there is no joint '{}'", name));
         continue;
       }
       reductions(t);
       const auto joint = movable.find(name);
-      if (joint == movable.end() || !driven.insert(name).second) continue;
+      if (joint == movable.end()) {
+        leaveOut(e, fmt::format("the joint '{}' is none of one axis", name));
+        continue;
+      }
+      if (!driven.insert(name).second) {
+        leaveOut(e, fmt::format("the joint '{}' has one already", name));
+        continue;
+      }
       drive(e, *joint->second, interfaceOf(t, e).find("Effort") != std::string_view::npos);
     }
   }

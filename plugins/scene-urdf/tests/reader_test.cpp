@@ -257,6 +257,14 @@ TEST_CASE("One bad part is left out or mended, and named with its place") {
        "there is no link 'world': the world itself is meant"},
       {a + "\n<transmission name='t'><joint name='gone'/></transmission>",
        "a.urdf:3:24: the <transmission> 't' is left out: there is no joint 'gone'"},
+      {a + "\n<transmission name='t'><joint/></transmission>",
+       "a.urdf:3:24: the <transmission> 't' is left out: expected an attribute 'name' of <joint>"},
+      {a + "\n<transmission name='t'/>", "a.urdf:3:1: the <transmission> 't' is left out: expected an element <joint>"},
+      {joint("fixed", "") + "\n<transmission name='t'><joint name='j'/></transmission>",
+       "a.urdf:4:24: the <transmission> 't' is left out: the joint 'j' is none of one axis"},
+      {joint("continuous", "") + "<transmission name='t'><joint name='j'/></transmission>\n" +
+           "<transmission name='u'><joint name='j'/></transmission>",
+       "a.urdf:4:24: the <transmission> 'u' is left out: the joint 'j' has one already"},
       {a + "\n<gazebo reference='gone'/>", "a.urdf:3:1: <gazebo> is ignored: there is no link or joint 'gone'"},
   };
   for (const auto& [text, expected] : cases) {
