@@ -132,6 +132,21 @@ Mesh readObj(const std::string& bytes, std::vector<std::string>& leftOut) {
   return std::move(out.mesh);
 }
 
+/// Drops the vertices that no triangle has, such as those of lines.
+void keepCornersOfTriangles(Mesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size() / 3);
+  for (const std::uint32_t i : mesh.triangles) used[i] = true;
+  std::vector<std::uint32_t> number(used.size());  // by the former one
+  std::vector<double> vertices;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    number[i] = static_cast<std::uint32_t>(vertices.size() / 3);
+    if (used[i])
+      vertices.insert(vertices.end(), {mesh.vertices[3 * i], mesh.vertices[3 * i + 1], mesh.vertices[3 * i + 2]});
+  }
+  mesh.vertices = std::move(vertices);
+  for (std::uint32_t& i : mesh.triangles) i = number[i];
+}
+
 }  // namespace
 
 Mesh readMesh(const std::string& name, const std::string& bytes, std::vector<std::string>* leftOut) {
@@ -153,6 +168,7 @@ Mesh readMesh(const std::string& name, const std::string& bytes, std::vector<std
     if (s.triangles.empty()) throw Error("expected triangles, found none");
     notRead = std::move(file.leftOut);
   }
+  if (!notRead.empty() && !s.triangles.empty()) keepCornersOfTriangles(s);
   if (leftOut) leftOut->insert(leftOut->end(), notRead.begin(), notRead.end());
   return s;
 }

@@ -137,6 +137,15 @@ TEST_CASE("Lines and points of a file are named, its triangles stay") {
         Names{"1 point", "2 lines"});
 }
 
+TEST_CASE("The vertices of lines and points that are left out are too: a convex hull is that of the triangles") {
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+  const engine::Mesh alone = readMesh("a.obj", corners + "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
+  const engine::Mesh mesh =
+      readMesh("a.obj", "v 9 9 9\nv 8 8 8\n" + corners + "l 1 2\nf 3 5 4\nf 3 4 6\nf 4 5 6\nf 3 6 5\nv 7 7 7\np 7\n");
+  CHECK(mesh.vertices == alone.vertices);
+  CHECK(mesh.triangles == alone.triangles);
+}
+
 TEST_CASE("A PLY file and an STL file of text are read") {
   const std::string ply =
       "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
