@@ -134,7 +134,8 @@ std::string RemoteMount::pathOf(const Leaf& node) const {
 
 Value RemoteMount::ask(std::string_view request, const Leaf& node, List arguments) {
   List reply = askAbout(request, node, std::move(arguments));
-  if (request == kCall) mirror_.catchUp();  // a method may remove its own node, as it may in this host
+  // A method may remove its own node, as it may in this host, and a set may rename it.
+  if (request == kCall || request == kSet) mirror_.catchUp();
   return reply.size() > 2 ? std::move(reply[2]) : Value();
 }
 

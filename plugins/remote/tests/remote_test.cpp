@@ -305,6 +305,23 @@ TEST_CASE("Scene nodes of another host are scene nodes below the mount") {
   CHECK(positionOf(box.world()) == Vec3f(24, 5, 6));
 }
 
+TEST_CASE("A mounted node that is renamed has its new name at once") {
+  Scenes s;
+  s.connect();
+  auto& box = s.mount->require<Transform>("box");
+  setProperty(box, "name", "crate");
+  CHECK(box.name() == "crate");
+  setProperty(box, "localPos", List{4, 5, 6});
+  CHECK(box.localPos() == Vec3f(4, 5, 6));
+  CHECK(s.mount->find("crate/look"));
+  // Outside of scenes as well.
+  s.b.connect();
+  Leaf& there = s.b.mount->require<Leaf>("usr/scene/crate");
+  setProperty(there, "name", "chest");
+  CHECK(there.name() == "chest");
+  CHECK(getProperty(there, "localPos") == Value(List{4.0, 5.0, 6.0}));
+}
+
 TEST_CASE("Handlers on a scene node of another host run with its events and with its values of that moment") {
   Scenes s;
   std::int64_t moves = 0;
