@@ -125,9 +125,11 @@ Address Address::read(const std::string& text) {
     throw Error(fmt::format(
         "expected an address such as 127.0.0.1:3400, or the path of a Unix socket such as /tmp/spark.sock, found '{}'",
         text));
-  std::string host = text.substr(0, colon);
+  std::string host = text.substr(0, colon), port = text.substr(colon + 1);
+  if (port.size() > 5 || std::stoi(port) > 65535)
+    throw Error(fmt::format("expected a port of at most 65535, found '{}'", text));
   if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
-  return {host, text.substr(colon + 1), {}};
+  return {host, port, {}};
 }
 
 }  // namespace spark::remote

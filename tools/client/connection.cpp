@@ -43,6 +43,9 @@ int connectTo(const addrinfo& address) {
 }
 
 std::unique_ptr<addrinfo, void (*)(addrinfo*)> resolve(const std::string& host, int port) {
+  // The library would take a larger one modulo 65536.
+  if (port < 1 || port > 65535)
+    throw std::runtime_error("expected a port from 1 to 65535, found " + std::to_string(port));
   addrinfo wanted{}, *found = nullptr;
   wanted.ai_socktype = SOCK_STREAM;
   if (const int wrong = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &wanted, &found); wrong != 0)

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include "api/files.h"
 #include "api/scene.h"
@@ -98,9 +99,13 @@ int main(int argc, char** argv) {
   int port = 3200, messages = 0;
   CLI::App app("Prints where the meshes of a running host are, a JSON line for each in each message", "sparkwatch");
   app.add_option("--host", host, "The host")->capture_default_str();
-  app.add_option("--port", port, "Its monitor port, with S-expressions")->capture_default_str();
+  app.add_option("--port", port, "Its monitor port, with S-expressions")
+      ->check(CLI::Range(1, 65535))
+      ->capture_default_str();
   app.add_option("--mesh", mesh, "Only meshes whose name contains this text, such as Sphere");
-  app.add_option("--messages", messages, "End after this many; 0: with the host")->capture_default_str();
+  app.add_option("--messages", messages, "End after this many; 0: with the host")
+      ->check(CLI::Range(0, std::numeric_limits<int>::max()))
+      ->capture_default_str();
   CLI11_PARSE(app, argc, argv);
   int taken = 0, found = 0;
   try {

@@ -480,6 +480,9 @@ TEST_CASE("Addresses and tokens that cannot be used are refused with a sentence"
   Leaf& server = host.kernel.create("RemoteServer", "/sys/server/remote");
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"nonsense", kToken}), Contains("expected an address"));
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:x1", kToken}), Contains("expected an address"));
+  CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:68828", kToken}),
+                    Contains("expected a port of at most 65535, found '127.0.0.1:68828'"));
+  CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:99999999999", kToken}), Contains("expected a port"));
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:0", "short"}), Contains("at least 16 characters"));
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"/nowhere/at/all", ""}), Contains("cannot listen"));
   callMethod(server, "listen", List{"127.0.0.1:0", ""});
