@@ -83,7 +83,7 @@ std::unique_ptr<Wire> RemoteMount::open() {
   } catch (const boost::system::system_error& e) {
     throw Error(
         fmt::format("{}: cannot reach a host at {}; one that says remote{{}} in its config listens", path(), address_),
-        e);
+        Error(e.code().message()));
   }
 }
 

@@ -85,6 +85,8 @@ void RemoteServer::listen(const std::string& address, const Secret& secret) {
     if (!at.path.empty()) return listenAt(at.path);
     token_ = token.empty() ? makeToken() : token;
     listenAt(*Tcp::resolver(io_).resolve(at.host, at.port, Tcp::resolver::passive).begin());
+  } catch (const boost::system::system_error& e) {
+    throw Error(fmt::format("cannot listen for remote hosts at {}", address), Error(e.code().message()));
   } catch (const std::exception& e) {
     throw Error(fmt::format("cannot listen for remote hosts at {}", address), e);
   }

@@ -22,6 +22,7 @@
 
 using namespace spark;
 using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
 
 namespace {
 constexpr const char* kToken = "0123456789abcdef";
@@ -485,10 +486,14 @@ TEST_CASE("Addresses and tokens that cannot be used are refused with a sentence"
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:99999999999", kToken}), Contains("expected a port"));
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:0", "short"}), Contains("at least 16 characters"));
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"/nowhere/at/all", ""}), Contains("cannot listen"));
+  Served other("127.0.0.1:0");
+  CHECK_THROWS_WITH(callMethod(server, "listen", List{other.address(), kToken}),
+                    EndsWith("because: Address already in use"));
   callMethod(server, "listen", List{"127.0.0.1:0", ""});
   CHECK(callMethod(server, "token", {}).toString().size() == 32);
   CHECK_THROWS_WITH(callMethod(server, "listen", List{"127.0.0.1:0", kToken}), Contains("listens at 127.0.0.1:"));
   Leaf& mount = host.kernel.create("RemoteMount", "/usr/other");
   setProperty(mount, "address", "127.0.0.1:1");
-  CHECK_THROWS_WITH(callMethod(mount, "connect", List{""}), Contains("cannot reach a host at 127.0.0.1:1"));
+  CHECK_THROWS_WITH(callMethod(mount, "connect", List{""}),
+                    Contains("cannot reach a host at 127.0.0.1:1;") && EndsWith("because: Connection refused"));
 }
