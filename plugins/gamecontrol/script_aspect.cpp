@@ -1,5 +1,7 @@
 #include "gamecontrol/script_aspect.h"
 
+#include <utility>
+
 #include "gamecontrol/script_event.h"
 
 namespace spark {
@@ -40,15 +42,34 @@ void ScriptAspect::agentLeaving(AgentAspect& agent) { tell(kLeaving, agent); }
 std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   constexpr const char* kKinds[] = {"perceptor", "effector", "scene"};
   const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name, request.file});
-  const Value answer = gamecontrol::askScripts(*this, kRequest, gamecontrol::eventNow(simulation_.get()), &data);
-  return gamecontrol::reasonOf(answer);
+  return verdict(kRequest, data, &ScriptAspect::requestFailed_);
 }
 
 std::string ScriptAspect::judgeAction(AgentAspect& agent, const Effector&, const Element& action) {
-  if (!actions_ || actions_->empty()) return {};
+  if (!actions_ || (actions_->empty() && !actionFailed_)) return {};
   const Value data(List{agent.path(), gamecontrol::toValue(action)});
-  const Value answer = gamecontrol::askScripts(*this, kAction, gamecontrol::eventNow(simulation_.get()), &data);
-  return gamecontrol::reasonOf(answer);
+  return verdict(kAction, data, &ScriptAspect::actionFailed_);
+}
+
+/// A rule that fails grants nothing. One that took too long has been switched off: no handler of it answers any more.
+std::string ScriptAspect::verdict(std::string_view channel, const Value& data, bool ScriptAspect::*failed) {
+  constexpr const char* kFailed = "the rule failed, the log says why";
+  const Value none(List{"no handler has answered"});
+  const Ref<ScriptAspect> self(this);  // its script may remove it
+  Kernel& kernel = this->kernel();
+  const std::int64_t faults = kernel.faults();
+  const Value answer = gamecontrol::askScripts(*this, channel, gamecontrol::eventNow(simulation_.get()), &data, none);
+  const bool unanswered = answer == none;
+  const bool fails = kernel.faults() != faults || (unanswered && self && this->*failed);
+  if (self) this->*failed = fails;
+  if (fails) return kFailed;
+  if (unanswered || answer.isNil() || answer.isString())
+    return unanswered ? std::string() : gamecontrol::reasonOf(answer);
+  kernel.countFault();
+  if (self && !std::exchange(isWrong_, true))
+    kernel.log().error("handler of '{}' at {}: {} that says why it refuses. This is logged once.", channel, path(),
+                       gamecontrol::reasonOf(answer));
+  return kFailed;
 }
 
 void ScriptAspect::tell(std::string_view channel, const AgentAspect& agent) {

@@ -14,10 +14,10 @@
 
 namespace spark::gamecontrol {
 
-/// Emits the event `channel` at `node` only and returns what the last of its scripts' handlers returned; nil if none
-/// returned anything, or if they failed. The scripts may delete the node. Simulation thread.
-inline Value askScripts(Leaf& node, std::string_view channel, Event event, const Value* data = nullptr) {
-  Value answer;
+/// Emits the event `channel` at `node` only and returns what the last of its scripts' handlers returned; `answer` if
+/// there are none, or if they failed. The scripts may delete the node. Simulation thread.
+inline Value askScripts(Leaf& node, std::string_view channel, Event event, const Value* data = nullptr,
+                        Value answer = {}) {
   event.name = channel;
   event.data = data;
   event.answer = &answer;
@@ -25,14 +25,17 @@ inline Value askScripts(Leaf& node, std::string_view channel, Event event, const
   return answer;
 }
 
-/// What a script returned as the reason of a refusal, one line for the log or the agent; "" for nil: no refusal.
+/// What a script returned as the reason of a refusal, one line for the log or the agent; "" for nil: no refusal. Only a
+/// text is a reason: what else it returned is the reason that it is wrong.
 inline std::string reasonOf(const Value& answer) {
   constexpr std::size_t kMost = 1024;  // bytes
   if (answer.isNil()) return {};
-  std::string reason = answer.plain();
-  if (reason.size() > kMost)
-    return fmt::format("its script returned a reason of {} bytes: expected at most {}", reason.size(), kMost);
-  return reason;
+  if (!answer.isString())
+    return fmt::format("its script returned a {}: expected nothing, or a text", typeName(answer.type()));
+  if (answer.toString().size() > kMost)
+    return fmt::format("its script returned a reason of {} bytes: expected at most {}", answer.toString().size(),
+                       kMost);
+  return answer.toString();
 }
 
 /// An event of the present cycle; of cycle 0 if there is no run loop.
