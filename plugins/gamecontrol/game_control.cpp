@@ -565,9 +565,12 @@ List GameControl::agentPaths() const {
 AgentAspect& GameControl::agentAt(const Value& agent) const {
   const std::string which = agent.plain();
   const Leaf* const named = agent.isString() ? kernel().root().find<Leaf>(which) : nullptr;
+  const auto isNumber = [&](int number) {
+    return agent.isNumber() ? agent.toNumber() == number : std::to_string(number) == which;
+  };
   std::string known;
   for (AgentAspect* const a : agents()) {
-    if (named == a || std::to_string(a->number()) == which) return *a;
+    if (named == a || isNumber(a->number())) return *a;
     known += fmt::format("{}{} {}", known.empty() ? "" : ", ", a->number(), a->path());
   }
   throw Error(fmt::format("expected the number or the path of an agent, found '{}'; {}", which,
