@@ -90,6 +90,7 @@ TEST_CASE("A client reports errors of the server") {
     unused = gone.port;
   }
   CHECK_THROWS_WITH(Connection("127.0.0.1", unused), Catch::Contains("nobody can be reached at 127.0.0.1:"));
+  CHECK_THROWS_WITH(Connection("127.0.0.1", 68828), Catch::Contains("expected a port from 1 to 65535, found 68828"));
   CHECK_THROWS_WITH(Connection("no.such.host.invalid", 3100),
                     Catch::Contains("there is no host 'no.such.host.invalid'"));
 }
