@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <vector>
+
 #include "api/joint_command.h"
 
 namespace spark {
@@ -41,13 +44,23 @@ class CreateEffector : public Effector {
     for (int i = 0; i < wanted && self; ++i) {
       AgentAspect* const owner = agent();
       if (!owner) return;
+      const std::uint64_t before = kernel().lastId();
       try {
         owner->importScene(scene_, {});
         if (self) ++created_;
       } catch (const std::exception& e) {
-        if (self) refuse(0, [&] { return fmt::format("nothing is created: {}", e.what()); });
+        if (!self) return;
+        const bool inPart = hasNewer(before);  // as files of the installed base may fail
+        if (inPart) ++created_;
+        refuse(0, [&] { return fmt::format("{} is created: {}", inPart ? "only a part" : "nothing", e.what()); });
       }
     }
+  }
+  /// Whether the agent has a node that was made after the object of that number.
+  bool hasNewer(std::uint64_t id) {
+    std::vector<Leaf*> all;
+    if (const AgentAspect* const owner = agent()) owner->collect(all);
+    return std::any_of(all.begin(), all.end(), [id](const Leaf* leaf) { return leaf->id() > id; });
   }
   std::string scene_;
   int limit_ = 0, pending_ = 0, created_ = 0;
