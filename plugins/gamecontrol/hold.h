@@ -21,8 +21,8 @@
 ///
 /// So a client that has sent `(scene ...)`, or need not, and is silent for a moment gets a minimal message, `(time (now
 /// 0.00))`, once after each of its messages, until it is complete. One that has answered two of them with `(syn)` and
-/// without `(init ...)` is complete, too. For clients of one program this is not enough: when no agent has made progress
-/// for a while, the match starts with those that are ready.
+/// without `(init ...)` is complete, too. For clients of one program this is not enough: when no agent has made
+/// progress for a while, the match starts with those that are ready.
 
 #include <memory>
 #include <string>
