@@ -422,33 +422,12 @@ void GameControl::joinBehaviors() {
   }
   for (const Ref<Behavior>& mind : joining)
     if (mind && !known(mind.get()))
-      reportIdle(
+      idle_.report(
           *mind,
           "drives nothing: expected it below /usr/agent, or as the only mind below a rule or below the AgentAspect "
           "of an object");
-  reportIdleEffectors();
+  idle_.reportEffectors(*this);
   behaviorsTree_.changed(*this);  // ignore the changes that joining made
-}
-
-/// Rules ask their perceptors when they want to know; effectors act for a mind only.
-void GameControl::reportIdleEffectors() {
-  std::vector<ControlAspect*> rules;
-  collect(rules);
-  for (ControlAspect* const rule : rules) {
-    std::vector<Effector*> effectors;
-    rule->collect(effectors);
-    std::vector<Behavior*> minds;
-    if (!effectors.empty()) rule->collect(minds);
-    if (!effectors.empty() && minds.empty())
-      reportIdle(*effectors.front(), "is never used: a rule's effectors need a Behavior below the rule, its mind");
-  }
-}
-
-/// Logs once that a node has no effect.
-void GameControl::reportIdle(const Leaf& node, std::string_view why) {
-  if (std::find(idle_.begin(), idle_.end(), node.id()) != idle_.end()) return;
-  idle_.push_back(node.id());
-  kernel().log().warning("{} ({}) {}.", node.path(), node.classObject()->name(), why);
 }
 
 void GameControl::joinNewcomers() {
@@ -577,16 +556,15 @@ AgentAspect& GameControl::agentAt(const Value& agent) const {
                           known.empty() ? "there is none" : "there are " + known));
 }
 
-const GameControl::Participant* GameControl::participantOf(const AgentAspect& agent) const {
+GameControl::Participant* GameControl::participantOf(const AgentAspect& agent) const {
   for (const auto& p : participants_)
     if (p->aspect() == &agent) return p.get();
   return nullptr;
 }
 
 bool GameControl::remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) {
-  for (const auto& p : participants_)
-    if (p->aspect() == &agent) return p->remark(agentLog(), cycle_, predicate, why);
-  return true;
+  Participant* const p = participantOf(agent);
+  return !p || p->remark(agentLog(), cycle_, predicate, why);
 }
 
 const Predicates* GameControl::percepts(const AgentAspect& agent) const {
@@ -605,47 +583,13 @@ bool GameControl::requiresWhatItAsks(const AgentAspect& agent) const {
 }
 
 void GameControl::reject(AgentAspect& agent, const std::string& why) {
-  for (const auto& p : participants_) {
-    if (p->aspect() != &agent || p->rejected()) continue;
-    logInfo(fmt::format("{} does not take part: {}.", p->label(), why));
-    p->reject(why);
-  }
+  Participant* const p = participantOf(agent);
+  if (!p || p->rejected()) return;
+  logInfo(fmt::format("{} does not take part: {}.", p->label(), why));
+  p->reject(why);
 }
 
-List GameControl::senseNow(Node& node) {
-  if (asking_) throw Error("a perceptor that is asked cannot ask others");
-  std::vector<Perceptor*> perceptors;
-  if (const auto self = node.as<Perceptor>()) perceptors.push_back(self);
-  node.collect(perceptors);
-  perceptors.erase(std::unique(perceptors.begin(), perceptors.end()), perceptors.end());
-  const std::vector<Ref<Perceptor>> all(perceptors.begin(), perceptors.end());
-  const Event event = gamecontrol::eventNow(kernel().root().find<ISimulation>());
-  struct Asking {
-    bool& on;
-    explicit Asking(bool& flag) : on(flag) { on = true; }
-    ~Asking() { on = false; }
-  } asking(asking_);
-
-  // What a perceptor and its modifiers remember is afterwards what it was before.
-  ++round_;
-  Predicates out;
-  for (const Ref<Perceptor>& perceptor : all) {
-    if (!perceptor) continue;  // a perceptor that is a script removed it
-    NowRunning now("sense", perceptor.get());
-    StateWriter before(true);
-    saveTree(*perceptor, before);
-    const auto first = out.size();
-    if (const auto view = perceptor->as<ISharedView>()) view->share(round_);
-    if (!perceptor) continue;
-    perceptor->sense(out, event);
-    if (!perceptor) continue;
-    if (const auto modifiers = gamecontrol::ModifierChain::of(*perceptor))
-      modifiers->apply({Signal::Kind::percept, out, first}, event, now);
-    StateReader then(before.bytes());
-    loadTree(*perceptor, then);
-  }
-  return toList(out);
-}
+List GameControl::senseNow(Node& node) { return questions_.ask(node, ++round_); }
 
 IConnection* GameControl::connection(const AgentAspect& agent) const {
   const Participant* p = participantOf(agent);

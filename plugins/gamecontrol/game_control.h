@@ -12,8 +12,10 @@
 #include "api/match.h"
 #include "api/succession.h"
 #include "gamecontrol/hold.h"
+#include "gamecontrol/idle_reports.h"
 #include "gamecontrol/lockstep_gate.h"
 #include "gamecontrol/participant.h"
+#include "gamecontrol/questions.h"
 #include "gamecontrol/vacancies.h"
 
 namespace spark {
@@ -81,8 +83,6 @@ class GameControl : public Node,
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
   AgentAspect* aspectFor(Behavior& mind) const;
-  void reportIdle(const Leaf& node, std::string_view why);
-  void reportIdleEffectors();
   std::string refusedPaths() const;
   void refuse(std::string_view paths);
   void executeTurn(const Event& event);
@@ -108,7 +108,7 @@ class GameControl : public Node,
   Clock::time_point now() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
-  const Participant* participantOf(const AgentAspect& agent) const;
+  Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
   void logInfo(const std::string& line);
   gamecontrol::AgentLog& agentLog();
@@ -121,7 +121,8 @@ class GameControl : public Node,
   gamecontrol::Participants newcomers_;     ///< in order of arrival
   std::vector<std::uint64_t>
       refusedBehaviors_;  ///< ids of behaviors whose agents could not be made or were excluded; not tried again
-  std::vector<std::uint64_t> idle_;           ///< ids of minds and effectors that were reported to have no effect
+  gamecontrol::IdleReports idle_;
+  gamecontrol::Questions questions_;
   mutable std::vector<AgentAspect*> agents_;  ///< of participants_; a cache that agents() updates
   mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
@@ -142,7 +143,6 @@ class GameControl : public Node,
   bool sync_ = false, requests_ = false, requireAll_ = true, byArrival_ = false;
   std::uint64_t arrivals_ = 0;               ///< number of the last message
   std::vector<Participant*> byArrivalList_;  ///< participants in the order in which they act, with byArrival
-  bool asking_ = false;                      ///< in senseNow()
   bool released_ = false;                    ///< the hold is over
   bool restored_ = false;                    ///< a state was loaded since the last act phase
   double joinBudget_ = 30, holdWait_ = 0.5, holdReport_ = 5, joinWait_ = 60, syncTimeout_ = 30, answerWait_ = 1,

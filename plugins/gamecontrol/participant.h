@@ -69,7 +69,7 @@ class Participant {
 
   /// True if it is a rule with a mind: no agent to others.
   bool isRule() const { return isRule_; }
-  /// True if what it asks for now was sent before its first percepts came.
+  /// True if its actions of this cycle were sent before its first percepts came: what they ask for, it requires.
   bool requiresNow(std::int64_t cycle) const { return cycle <= requiredUntil_; }
   /// It does not take part, as what it requires was refused: it acts no more, and leaves as soon as it has heard so.
   void reject(std::string why) { rejection_ = std::move(why); }

@@ -39,7 +39,39 @@ class Quitter : public Behavior {
   int starts = 0;
 };
 
+/// Counts what it senses, and fails when it is told to.
+class Counting : public Perceptor {
+  SPARK_CLASS(Counting, Perceptor)
+ public:
+  static void describe(Description<Counting>& d) { d.doc("Counts."); }
+  void sense(Predicates& out, const Event&) override {
+    out.open("count").add(++count).close();
+    if (fails) throw Error("it cannot sense");
+  }
+  void saveState(StateWriter& out) const override { out.write(std::int64_t{count}); }
+  void loadState(StateReader& in) override { count = static_cast<int>(in.readInteger()); }
+  int count = 0;
+  bool fails = false;
+};
+
 }  // namespace
+
+TEST_CASE("A question to a perceptor changes nothing that it remembers, whether it is answered or fails") {
+  Stadium s;
+  Node& ball = *s.node("/usr/scene/Ball").asNode();
+  ball.kernel().registerClass<Counting>();
+  Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  auto& counting = aspect.create<Counting>("Counting", "counting");
+  const auto ask = [&] { return callMethod(aspect, "sense", {}).text(); };
+  counting.count = 4;
+  CHECK_THAT(ask(), Catch::Contains("5"));
+  CHECK(counting.count == 4);
+  counting.fails = true;
+  CHECK_THROWS_WITH(ask(), Catch::Contains("it cannot sense"));
+  CHECK(counting.count == 4);
+  counting.fails = false;
+  CHECK_THAT(ask(), Catch::Contains("5"));  // the failed one is over
+}
 
 TEST_CASE("A ball becomes an agent, plays, and becomes a ball again") {
   Stadium s;
