@@ -19,9 +19,15 @@ while (head := os.read(3, 4)):
     answer = b'Aheard ' + said[1:] if said[:1] == b'S' else b'I'
     os.write(4, struct.pack('>I', len(answer)) + answer)
 """
+# Hears and never answers.
+IDLE = """#!/usr/bin/env python3
+import os
+while os.read(3, 1):
+    pass
+"""
 DATABASE = """<agentdb>
 <agent_type_external name="echo"><timer>fixed 1</timer><exec_line>agent.py</exec_line></agent_type_external>
-<agent_type_external name="idle"><timer>fixed 1</timer><exec_line>sleep 60</exec_line></agent_type_external>
+<agent_type_external name="idle"><timer>fixed 1</timer><exec_line>idle.py</exec_line></agent_type_external>
 </agentdb>"""
 NONSENSE = ["start", "start x", "start -1 1 idle", "start 1e9 1 idle", "start 99999999999999999999999 1 idle",
             "start 7 seven idle", "start 8 1 nobody", "to", "to x D", "to 123 D", "to 18446744073709551616 D", "\x00"]
@@ -35,8 +41,9 @@ def say(client, text):
 def main():
     with tempfile.TemporaryDirectory() as name, socket.create_server(("127.0.0.1", 0)) as server:
         folder = Path(name)
-        (folder / "agent.py").write_text(AGENT)
-        (folder / "agent.py").chmod(0o755)
+        for program, text in (("agent.py", AGENT), ("idle.py", IDLE)):
+            (folder / program).write_text(text)
+            (folder / program).chmod(0o755)
         (folder / "db.xml").write_text(DATABASE)
         with Program("sparkcomm", "--port", server.getsockname()[1], "--database", folder / "db.xml", "--most", "3",
                      "--patience", "20") as comm:

@@ -14,7 +14,8 @@ local function triangle(place, vertices)
   mesh.triangles = { 0, 1, 2 }
   surface(mesh)
 end
-local corners, sides = {}, { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5 }
+local corners = {}
+local sides = { 0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4, 2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5 }
 for i = 0, 7 do
   for k = 0, 2 do corners[#corners + 1] = (i >> k) & 1 == 1 and 0.1 or -0.1 end
 end

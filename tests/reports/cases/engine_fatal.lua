@@ -8,13 +8,7 @@
 include "../lib/judge.lua"
 include "house.lua"
 files() scene() physics(engineOption()) simulation()
-local function crate(name, x, z)
-  local place = new("Transform", "/usr/scene/" .. name)
-  place.localPos = { x, 0, z }
-  local body = place:new("RigidBody", "body")
-  body:setBoxTotal(1, 0.4, 0.4, 0.4)
-  return body, place
-end
+include "../lib/crate.lua"
 local upper, place = crate("upper", 0, 5)
 local lower, other = crate("lower", 0, 4), crate("other", 9, 5)
 local joint = place:new("UniversalJoint", "joint")

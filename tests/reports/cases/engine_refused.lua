@@ -8,15 +8,10 @@
 include "../lib/judge.lua"
 include "house.lua"
 files() scene() physics(engineOption()) simulation()
-local function crate(name, x, mass)
-  local place = new("Transform", "/usr/scene/" .. name)
-  place.localPos = { x, 0, 5 }
-  place:new("RigidBody", "body"):setBoxTotal(mass, 0.4, 0.4, 0.4)
-  place:new("BoxCollider", "box"):setBoxLengths(0.4, 0.4, 0.4)
-  return place
-end
-local stone = crate("stone", 0, 1)
-crate("feather", 2, 2e-15)
+include "../lib/crate.lua"
+local _, stone = crate("stone", 0, 5)
+local _, feather = crate("feather", 2, 5, 2e-15)
+for _, place in ipairs{ stone, feather } do place:new("BoxCollider", "box"):setBoxLengths(0.4, 0.4, 0.4) end
 on("sense", function(_, event)
   if event.cycle == 20 then near("the height of the stone, in a world that stands still", stone.position[3], 5, 0) end
 end)

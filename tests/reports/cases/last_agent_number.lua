@@ -7,7 +7,8 @@ include "house.lua" include "../lib/judge.lua"
 files() scene() physics() simulation()
 local control = agents{}
 for i = 1, 3 do
-  new("Transform", "/usr/scene/o" .. i):new("AgentAspect", "agent"):new("ScriptBehavior", "mind"):on("think", function() end)
+  local aspect = new("Transform", "/usr/scene/o" .. i):new("AgentAspect", "agent")
+  aspect:new("ScriptBehavior", "mind"):on("think", function() end)
 end
 on("rule", function(self, event)
   if event.cycle == 5 then

@@ -50,7 +50,8 @@ on("rule", function(self, event)
     judge(m .. ": the request is " .. (granted[name] and "granted" or "refused"), (granted[name] == true) == grants)
     -- from the long one on the action (request ...) is refused, too
     if not grants and not m:find("long") and m ~= "after it" then
-      judge(m .. ": the agent is told " .. tostring(refused[name]), refused[name] == (m == "text" and "why not you" or "why the rule failed, the log says why"))
+      local due = m == "text" and "why not you" or "why the rule failed, the log says why"
+      judge(m .. ": the agent is told " .. tostring(refused[name]), refused[name] == due)
     end
   end
 end)

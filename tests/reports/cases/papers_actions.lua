@@ -26,5 +26,6 @@ on("rule", function(self, event)
   if event.cycle ~= 18 then return end
   judge("the weak one moves", bodies.weak.velocity[1] > 0.1)
   judge("the strong one does not", bodies.strong.velocity[1] == 0)
-  judge("the rule heard both", heard["/usr/scene/weak/agent"] == "force" and heard["/usr/scene/strong/agent"] == "force")
+  local weak, strong = heard["/usr/scene/weak/agent"], heard["/usr/scene/strong/agent"]
+  judge("the rule heard both", weak == "force" and strong == "force")
 end)

@@ -17,7 +17,8 @@ on("rule", function(self, event)
     control:disqualify("/usr/scene/o2/agent", "it dived")
     control:removeAgent(3)
     local good, why = pcall(function() control:disqualify(7, "it is not there") end)
-    judge("a wrong one is an error: " .. tostring(why):sub(1, 90), not good and why:find("there are 1 /usr/scene/o1/agent", 1, true))
+    judge("a wrong one is an error: " .. tostring(why):sub(1, 90),
+      not good and why:find("there are 1 /usr/scene/o1/agent", 1, true))
   elseif event.cycle == 8 then
     judge("one stays", listed() == "/usr/scene/o1/agent")
   end

@@ -12,7 +12,10 @@ local number, bodies = 0, {}
 new("ScriptAspect", "/sys/server/gamecontrol/rule"):on("agentConnected", function(self, event)
   number = number + 1
   local place = get(event.data)
-  if order[number] == "loaded" then place:importScene("rsg/agent/papers_cart.rsg") bodies.loaded = place:find("cart/body") end
+  if order[number] == "loaded" then
+    place:importScene("rsg/agent/papers_cart.rsg")
+    bodies.loaded = place:find("cart/body")
+  end
   if order[number] == "built" then
     bodies.built = place:new("RigidBody", "body")
     bodies.built:setSphereTotal(1, 0.1)
@@ -24,8 +27,12 @@ for _, name in ipairs(order) do
   new("ScriptBehavior", "/usr/agent/" .. name):on("think", function(self, event)
     self.actions = ""
     if event.cycle > 12 then self.actions = "(force 1 0 0)" end
-    if event.cycle == 8 then self.actions = "(request (perceptor GPS) (name gps))(request (effector ForceEffector) (name more) " .. at .. ")" end
-    for _, percept in ipairs(event.data) do heard[name][percept[1] .. (percept[2] and percept[2][2] or "")] = percept end
+    if event.cycle == 8 then
+      self.actions = "(request (perceptor GPS) (name gps))(request (effector ForceEffector) (name more) " .. at .. ")"
+    end
+    for _, percept in ipairs(event.data) do
+      heard[name][percept[1] .. (percept[2] and percept[2][2] or "")] = percept
+    end
   end)
 end
 -- without a robot an agent has no percepts, so this one asks at once

@@ -10,7 +10,8 @@ local function maker(name, limit)
   local create = a:new("CreateEffector", "make")
   create.scene, create.limit = "rsg/agent/papers_bare.rsg", limit
   a:new("ScriptBehavior", "mind"):on("think", function(self, event)
-    self.actions = event.cycle % 5 == 0 and event.cycle < 25 and (event.cycle == 10 and "(create)(create)" or "(create)") or ""
+    local asks = event.cycle % 5 == 0 and event.cycle < 25
+    self.actions = not asks and "" or event.cycle == 10 and "(create)(create)" or "(create)"
   end)
   return a
 end

@@ -26,7 +26,8 @@ on("rule", function(self, event)
   judge("a mind alone thinks", thoughts["/usr/scene/thinker/agent/mind"] > 15)
   judge("one of another scene thinks", thoughts["/usr/other/far/agent/mind"] > 15)
   local names = {}
-  for i = 2, #(seen["/usr/other/far/agent/mind"] or {}) do names[#names + 1] = seen["/usr/other/far/agent/mind"][i][1] end
+  local far = seen["/usr/other/far/agent/mind"] or {}
+  for i = 2, #far do names[#names + 1] = far[i][1] end
   judge("and sees its own scene: " .. table.concat(names, " "), table.concat(names, " ") == "far agent")
   judge("two agents", control.agentCount == 2)
   judge("the others do not think", thoughts["/usr/scene/lost"] + thoughts["/usr/scene/thinker/agent/second"] == 0)

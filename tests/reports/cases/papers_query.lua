@@ -29,7 +29,9 @@ silent:new("ScriptBehavior", "mind"):on("think", function(self, event)
   for _, p in ipairs(event.data) do if p[1] == "time" then received.silent[#received.silent + 1] = p[2][2] end end
 end)
 local nested = true
-asks:new("ScriptPerceptor", "nosy"):on("perceive", function() nested = pcall(function() return asks:find("gps"):sense() end) return nil end)
+asks:new("ScriptPerceptor", "nosy"):on("perceive", function()
+  nested = pcall(function() return asks:find("gps"):sense() end)
+end)
 on("rule", function(self, event)
   if event.cycle ~= 28 then return end
   judge("noise is that of the moment, twice the same", sameNoise)

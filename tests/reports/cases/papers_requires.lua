@@ -35,13 +35,15 @@ on("rule", function(self, event)
     local v = function(name) return get("/usr/scene/" .. name .. "/body").velocity[1] end
     judge("granted: takes part", v("happy") > 0.1)
     judge("refused later: takes part", v("later") > 0.1 and told.later)
-    judge("refused at the start: an object again, which never acted", v("wants") == 0 and not get("/usr/scene/wants/agent"))
+    judge("refused at the start: an object again, which never acted",
+      v("wants") == 0 and not get("/usr/scene/wants/agent"))
     judge("and was told", told.wants and told.robot)
     judge("a robot that requires more: gone", not get("/usr/scene/AgentAspect4"))
     judge("two take part", control.agentCount == 2)
     control.requireAll = false
     object("content", good .. bad, "")
   elseif event.cycle == 36 then
-    judge("requireAll = false: takes part without it", get("/usr/scene/content/body").velocity[1] > 0.1 and told.content)
+    judge("requireAll = false: takes part without it",
+      get("/usr/scene/content/body").velocity[1] > 0.1 and told.content)
   end
 end)

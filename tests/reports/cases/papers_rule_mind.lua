@@ -24,7 +24,9 @@ referee:new("ScriptBehavior", "mind"):on("think", function(self, event)
   for _, percept in ipairs(event.data) do
     for i = 2, #percept do
       local number = percept[i][1]:match("^runner(%d)")
-      if number and percept[i][2][2] > 5 and event.cycle > 10 then self.actions = "(disqualify " .. number .. " it is too far out)" end
+      if number and percept[i][2][2] > 5 and event.cycle > 10 then
+        self.actions = "(disqualify " .. number .. " it is too far out)"
+      end
     end
   end
 end)
@@ -37,7 +39,9 @@ on("rule", function(self, event)
   if event.cycle ~= 28 then return end
   judge("a rule is an agent aspect", referee:isA("AgentAspect"))
   judge("its mind thinks in every cycle", thoughts > 20)
-  judge("the far one is disqualified, the near one stays", not get("/usr/scene/runner1/agent") and get("/usr/scene/runner2/agent"))
-  judge("the rule is not listed, and its number is 0", table.concat(control:agents(), " ") == "/usr/scene/runner2/agent" and referee.number == 0)
+  judge("the far one is disqualified, the near one stays",
+    not get("/usr/scene/runner1/agent") and get("/usr/scene/runner2/agent"))
+  judge("the rule is not listed, and its number is 0",
+    table.concat(control:agents(), " ") == "/usr/scene/runner2/agent" and referee.number == 0)
   judge("a rule asks its perceptor", asked[1] == "time" and asked[2][2] == asked.now)
 end)

@@ -13,14 +13,16 @@ local listener = control:new("ScriptAspect", "listener")
 local asked = {}
 listener:on("request", function(self, event) asked[#asked + 1] = table.concat(event.data, " ", 2) end)
 
+local function file(name) return "(scene rsg/agent/papers_" .. name .. ".rsg)" end
+local parts, seer, bare = { "GPS", "ForceEffector" }, "rsg/agent/papers_seer.rsg", "rsg/agent/papers_bare.rsg"
 local steps = {
-  { allowed = {}, ask = "(scene rsg/agent/papers_bare.rsg)", granted = false, what = "nothing is listed: no robot" },
-  { allowed = { "GPS" }, ask = "(scene rsg/agent/papers_cart.rsg)", granted = false, what = "an effector is not listed" },
-  { allowed = { "GPS", "ForceEffector" }, ask = "(scene rsg/agent/papers_cart.rsg)", granted = true, what = "all parts are listed" },
-  { allowed = { "GPS", "ForceEffector" }, ask = "(scene rsg/agent/papers_seer.rsg)", granted = false, what = "the eye is not listed" },
-  { allowed = { "rsg/agent/papers_seer.rsg" }, ask = "(scene rsg/agent/papers_seer.rsg)", granted = true, what = "the file is listed" },
-  { allowed = { "rsg/agent/papers_bare.rsg" }, ask = "(scene rsg/agent/papers_bare.rsg)(request (scene rsg/agent/papers_seer.rsg))",
-    granted = false, what = "a file for the robot has an eye" },
+  { allowed = {}, ask = file "bare", granted = false, what = "nothing is listed: no robot" },
+  { allowed = { "GPS" }, ask = file "cart", granted = false, what = "an effector is not listed" },
+  { allowed = parts, ask = file "cart", granted = true, what = "all parts are listed" },
+  { allowed = parts, ask = file "seer", granted = false, what = "the eye is not listed" },
+  { allowed = { seer }, ask = file "seer", granted = true, what = "the file is listed" },
+  { allowed = { bare }, ask = file "bare" .. "(request " .. file "seer" .. ")", granted = false,
+    what = "a file for the robot has an eye" },
 }
 local made = {}
 local first = 2
@@ -37,9 +39,11 @@ listener:on("agentLeaving", function(self, event) left[event.data] = true end)
 on("rule", function(self, event)
   if event.cycle ~= 28 then return end
   for i, step in ipairs(steps) do
-    judge(step.what .. (step.granted and ": granted" or ": disqualified"), made[i] and step.granted == not left[made[i]])
+    judge(step.what .. (step.granted and ": granted" or ": disqualified"),
+      made[i] and step.granted == not left[made[i]])
   end
   local all = table.concat(asked, "; ")
   judge("a rule in Lua hears of files and their parts: " .. all:sub(1, 120),
-        all:find("scene rsg/agent/papers_bare.rsg", 1, true) == 1 and all:find("scene rsg/agent/papers_cart.rsg", 1, true) and all:find("effector ForceEffector legs rsg/agent/papers_cart.rsg", 1, true))
+    all:find("scene rsg/agent/papers_bare.rsg", 1, true) == 1 and all:find("scene rsg/agent/papers_cart.rsg", 1, true)
+    and all:find("effector ForceEffector legs rsg/agent/papers_cart.rsg", 1, true))
 end)

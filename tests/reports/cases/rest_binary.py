@@ -3,14 +3,12 @@
 # right: a bad byte costs its predicate, quoted text is whole in both directions, and lockstep goes on
 import json
 import re
-import socket
-import struct
 import sys
 import tempfile
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "lib"))
-from client import PATIENCE, Host, judge  # noqa: E402
+from client import Client, Host, judge  # noqa: E402
 
 CONFIG = """
 include "house.lua"
@@ -32,25 +30,12 @@ end)
 ALL = bytes(range(256))
 
 
-class Agent:
+class Agent(Client):
     """An agent in lockstep: one message to the host, one from it."""
 
-    def __init__(self, port):
-        self.socket = socket.create_connection(("127.0.0.1", port), PATIENCE)
-
     def exchange(self, message):
-        self.socket.sendall(struct.pack(">I", len(message)) + message)
-        size = struct.unpack(">I", self.exactly(4))[0]
-        return self.exactly(size)
-
-    def exactly(self, count):
-        data = b""
-        while len(data) < count:
-            part = self.socket.recv(count - len(data))
-            if not part:
-                raise EOFError("the host closed the connection")
-            data += part
-        return data
+        self.send(message)
+        return self.receive_bytes()
 
 
 def quoted(data):

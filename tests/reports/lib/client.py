@@ -59,11 +59,15 @@ class Client:
         self.socket = socket.create_connection(("127.0.0.1", port), PATIENCE)
         self.socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
 
-    def send(self, text):
-        self.socket.sendall(struct.pack(">I", len(text)) + text.encode())
+    def send(self, message):
+        data = message if isinstance(message, bytes) else message.encode()
+        self.socket.sendall(struct.pack(">I", len(data)) + data)
 
     def receive(self):
-        return self._read(struct.unpack(">I", self._read(4))[0]).decode()
+        return self.receive_bytes().decode()
+
+    def receive_bytes(self):
+        return self._read(struct.unpack(">I", self._read(4))[0])
 
     def _read(self, count):
         data = b""
