@@ -189,6 +189,8 @@ void makePieces(World& w) {
     call(make(w, joint, other + "/joint"), "attach", {"../../" + one + "/body", "../body"});
     x += 2;
   }
+  makeBox(w, "carriage", {x, 0, 1});
+  call(make(w, "SliderJoint", "carriage/rail"), "attach", {"../body", ""});
   make(w, "ActuatorEffector", "SliderJoint2/joint/push");
   makeBox(w, "walker", {0, 4, 0.5});
   make(w, "FPSController", "walker/body/legs");
@@ -211,6 +213,7 @@ void inputPieces(World& w, int cycle) {
         Leaf& j = at((std::string(joint) + "Joint2/joint").c_str());
         call(j, "setMaxMotorForce", {axis, 2.0 + axis});
       }
+  if (cycle == 5) call(at("carriage/rail"), "setMaxMotorForce", {0, 3.0});
   if (cycle % 30 == 7) call(w.at("/sys/variables/Status"), "set", {"score", List{cycle, 1}});
   if (cycle == 10)
     setProperty(at("walker/body/legs"), "HAngle", 30.0), setProperty(at("walker/body/legs"), "forward", 0.5);
