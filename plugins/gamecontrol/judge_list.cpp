@@ -24,7 +24,6 @@ std::string JudgeList::judgeRequest(AgentAspect& agent, const PartRequest& reque
 }
 
 std::string JudgeList::judgeAction(AgentAspect& agent, Effector& effector, const Element& action) const {
-  if (judges_.empty()) return {};
   const Ref<AgentAspect> acting(&agent);
   const Ref<Effector> judged(&effector);
   for (const Judge& j : judges_) {

@@ -16,9 +16,11 @@ class JudgeList {
  public:
   /// Takes the judges of `links`, without control aspects that are disabled.
   void update(const Links<IAgentJudge>& links);
+  /// True if there are none.
+  bool empty() const { return judges_.empty(); }
   /// IAgentJudge::judgeRequest() of all of them, also of those after one that refuses: "", or the first reason.
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) const;
-  /// IAgentJudge::judgeAction() of one after the other, until one refuses. Allocates nothing without judges.
+  /// IAgentJudge::judgeAction() of one after the other, until one refuses.
   std::string judgeAction(AgentAspect& agent, Effector& effector, const Element& action) const;
 
  private:

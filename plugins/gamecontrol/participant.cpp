@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "gamecontrol/request_effector.h"
 #include "gamecontrol/scene_effector.h"
 #include "spark/error.h"
 #include "spark/running.h"
@@ -207,9 +208,14 @@ void Participant::executeModified(AgentLog& log, const Event& event, const Judge
 void Participant::executeAction(Effector& effector, const Element& action, AgentLog& log, std::int64_t cycle,
                                 const JudgeList& judges) {
   try {
-    if (AgentAspect* const agent = isRule_ ? nullptr : aspect())
-      if (const std::string why = judges.judgeAction(*agent, effector, action); !why.empty())
+    if (AgentAspect* const agent = isRule_ || judges.empty() ? nullptr : aspect()) {
+      const Ref<Effector> judged(&effector);  // a judge may be a script that removes it
+      if (const std::string why = judges.judgeAction(*agent, effector, action); !why.empty()) {
+        if (const auto asks = judged && judged->isLinked() ? judged->as<RequestEffector>() : nullptr)
+          asks->answerRefused(action, why);
         return void(remark(log, cycle, action.head(), fmt::format("refused: {}.", why)));
+      }
+    }
     if (const std::string why = effector.act(action); !why.empty()) remark(log, cycle, action.head(), why);
   } catch (const std::exception& fault) {
     effector.kernel().countFault();
@@ -235,8 +241,8 @@ bool Participant::resolveRobot() {
   }
   const std::size_t effectors = effectors_.rebuild(*root), perceptors = perceptors_.rebuild(*root);
   const bool first = !hasRobot_ && (perceptors > given_.perceptors || effectors > given_.effectors);
-  blind_ = perceptors <= given_.perceptors;
   hasRobot_ |= first;
+  blind_ = perceptors <= given_.perceptors && (hasRobot_ || gamecontrol::hasRobot(*root));
   return first && !isRule_;
 }
 
@@ -267,7 +273,7 @@ int Participant::deliver(AgentLog& log, std::int64_t cycle, Clock::time_point no
 /// False if the message was dropped.
 bool Participant::deliverFirst(AgentLog& log, std::int64_t cycle, Clock::time_point now, IInputTape* tape) {
   if (leaving() || vacant_) return true;
-  if (percepts_.first().empty() && !(inside_ ? blind_ && (hasRobot_ || given_.isObject()) : sendsEmpty_)) return true;
+  if (percepts_.first().empty() && !(inside_ ? blind_ : sendsEmpty_)) return true;
   perceived_ = true;
   if (inside_) {
     think(log, cycle);

@@ -283,7 +283,7 @@ class Participant {
   std::string rejection_;            ///< "", or why it does not take part
   std::uint64_t arrival_ = 0;
   bool turn_ = true, sendsEmpty_ = false;  ///< see setTurn()
-  bool blind_ = false;  ///< it has no perceptors of its own: its behavior is called with empty percepts
+  bool blind_ = false;                     ///< its robot has no perceptors: its behavior is called with empty percepts
   Given given_;
   LockstepRecord lockstep_;
   ActionQueue actions_;

@@ -15,6 +15,7 @@ namespace {
 using Kind = PartRequest::Kind;
 
 constexpr const char* kCamera = "ImagePerceptor";
+constexpr const char* kGroup = "CollisionGroup";
 constexpr const char* kUsage =
     "expected (request (perceptor <class>) (name <name>) (at <node>)), or effector in its place, or (request (scene "
     "<file>) (at <node>))";
@@ -44,9 +45,20 @@ int countBelow(const Node& node, std::string_view className) {
   return count;
 }
 
-std::string_view textOf(const Element& action, std::string_view name) {
-  const Element e = action.named(name);
-  return e && e.at(1) && e.at(1).isText() ? e.at(1).text() : std::string_view();
+/// An atom as text.
+std::string textOf(const Element& e) {
+  return e.token().kind == Token::Kind::integer  ? std::to_string(e.integer())
+         : e.token().kind == Token::Kind::number ? fmt::format("{}", e.number())
+                                                 : std::string(e.text());
+}
+
+/// Appends the words of an element to a text, up to `most` bytes.
+void addWords(const Element& e, std::size_t most, std::string& to) {
+  if (e.isList()) {
+    for (const Element inner : e) addWords(inner, most, to);
+  } else if (to.size() < most) {
+    to += (to.empty() ? "" : " ") + textOf(e).substr(0, most);
+  }
 }
 
 /// The first node of that name below `node`, in tree order.
@@ -59,9 +71,14 @@ Node* findBelow(Node& node, std::string_view name) {
   return nullptr;
 }
 
-/// True for names that are one word in every language, and for none.
-bool isPlain(std::string_view name) {
-  return name.empty() || (isWord(name) && std::all_of(name.begin(), name.end(), [](char c) { return c > 0; }));
+/// True for a text that is one word in every language.
+bool isPlain(std::string_view text) {
+  return isWord(text) && std::all_of(text.begin(), text.end(), [](char c) { return c > 0; });
+}
+
+/// True for a name that a node can have, and that is no more than a name in a path.
+bool isName(std::string_view name) {
+  return isPlain(name) && name != "." && name != ".." && name.find_first_of("/[]") == name.npos;
 }
 
 /// True for what game control gives an agent once: another one would undo its limits.
@@ -70,46 +87,63 @@ bool isGiven(ClassObject& type) {
          type.isA("DisqualifyEffector");
 }
 
-/// True if the agent has a robot, loaded by itself or made by a rule: more than what game control gives it. Objects
-/// that are agents need none.
-bool hasRobot(const AgentAspect& root) {
+}  // namespace
+
+bool gamecontrol::hasRobot(const AgentAspect& root) {
   const auto* const loader = root.find<SceneEffector>(GameControl::kCreateEffector);
   if (!loader || loader->loaded()) return true;
   return std::any_of(root.children().begin(), root.children().end(), [](const auto& child) {
     return child->name() != GameControl::kCreateEffector && child->name() != RequestEffector::kName &&
-           child->name() != RequestPerceptor::kName;
+           child->name() != RequestPerceptor::kName && !child->classObject()->isA(kGroup);
   });
 }
 
-}  // namespace
+void RequestPerceptor::add(std::string name, std::string why, std::string unused) {
+  if (answers_.size() < kMost)
+    answers_.push_back({std::move(name), std::move(why), std::move(unused)});
+  else
+    ++unanswered_;
+}
 
 void RequestPerceptor::sense(Predicates& out, const Event&) {
-  for (const auto& [name, why] : answers_) {
-    out.open(why.empty() ? "granted" : "refused").pair("name", std::string_view(name));
-    if (!why.empty()) {
-      out.open("why");
-      writeWords(out, why);
-      out.close();
-    }
+  const auto words = [&out](const char* head, const std::string& line) {
+    if (line.empty()) return;
+    out.open(head);
+    writeWords(out, line);
+    out.close();
+  };
+  for (const Answer& a : answers_) {
+    out.open(a.why.empty() ? "granted" : "refused").open("name").add(a.name, !isWord(a.name)).close();
+    words("why", a.why);
+    words("unused", a.unused);
+    out.close();
+  }
+  if (unanswered_ > 0) {
+    out.open("refused");
+    words("why", fmt::format("expected fewer requests, found {} more", unanswered_));
     out.close();
   }
   answers_.clear();
+  unanswered_ = 0;
 }
 
 void RequestPerceptor::saveState(StateWriter& out) const {
   out.write(static_cast<std::int64_t>(answers_.size()));
-  for (const auto& [name, why] : answers_) {
+  for (const auto& [name, why, unused] : answers_) {
     out.write(name);
     out.write(why);
+    out.write(unused);
   }
+  out.write(unanswered_);
 }
 
 void RequestPerceptor::loadState(StateReader& in) {
   answers_.clear();
   for (std::size_t n = in.readCount(); n > 0; --n) {
-    std::string name = in.readString();
-    answers_.emplace_back(std::move(name), in.readString());
+    std::string name = in.readString(), why = in.readString();
+    answers_.push_back({std::move(name), std::move(why), in.readString()});
   }
+  unanswered_ = in.readInteger();
 }
 
 void RequestEffector::describe(Description<RequestEffector>& d) {
@@ -130,50 +164,140 @@ void RequestEffector::addTo(AgentAspect& aspect, const std::string& folder) {
   aspect.create("RequestPerceptor", RequestPerceptor::kName);
 }
 
-std::string RequestEffector::act(const Element& action) {
-  if (pending_.size() >= kMaxPending)
-    return fmt::format("expected at most {} requests in a cycle, found more: this one is lost.", kMaxPending);
-  for (const auto& [word, kind] :
-       {std::pair("perceptor", Kind::perceptor), {"effector", Kind::effector}, {"scene", Kind::scene}}) {
-    if (!action.named(word)) continue;
-    Request request{kind, std::string(textOf(action, word)), std::string(textOf(action, "name")),
-                    std::string(textOf(action, "at")), false};
-    if (request.type.empty() || (kind != Kind::scene && request.name.empty())) return kUsage;
-    if (std::max({request.type.size(), request.name.size(), request.at.size()}) > kMaxText)
-      return fmt::format("expected texts of at most {} bytes, found a longer one.", kMaxText);
-    if (!isPlain(request.type) || !isPlain(request.name) || !isPlain(request.at))
-      return "expected names of printable ASCII characters, found others, a blank, a bracket or a quote.";
-    if (const auto* const control = find<GameControl>(IGameControl::kPath); control && agent())
-      request.required = control->requiresWhatItAsks(agent()->outermost());
-    pending_.push_back(std::move(request));
-    return {};
+std::string RequestEffector::read(const Element& action, Request& request) {
+  std::string why;
+  const auto fail = [&why](std::string_view line) {
+    if (why.empty()) why = line;
+  };
+  // What it says, once each. All of it is read, so that the answer can name the request.
+  int kinds = 0;
+  for (auto it = ++action.begin(); it != action.end(); ++it) {
+    const Element e = *it;
+    const std::string_view word = e.isList() ? e.head() : std::string_view();
+    std::string* to = word == "name" ? &request.name : word == "at" ? &request.at : nullptr;
+    for (const auto& [name, kind] :
+         {std::pair("perceptor", Kind::perceptor), {"effector", Kind::effector}, {"scene", Kind::scene}}) {
+      if (word != name) continue;
+      if (++kinds > 1) fail("expected one of (perceptor ...), (effector ...) and (scene ...), found more than one");
+      request.kind = kind;
+      to = &request.type;
+    }
+    if (!to) {
+      addWords(e, kMaxText, request.unused);
+      continue;
+    }
+    const Element value = e.at(1);
+    if (!value || value.isList()) {
+      fail(kUsage);
+      continue;
+    }
+    if (!to->empty()) fail(fmt::format("expected ({} ...) once, found it more than once", word));
+    *to = textOf(value);
+    for (auto rest = ++ ++e.begin(); rest != e.end(); ++rest) addWords(*rest, kMaxText, request.unused);
   }
-  return kUsage;
+  if (kinds == 0) fail(kUsage);
+
+  // What can be no name, class or file.
+  const bool isScene = request.kind == Kind::scene;
+  if (std::max({request.type.size(), request.name.size(), request.at.size()}) > kMaxText)
+    fail(fmt::format("expected texts of at most {} bytes, found a longer one", kMaxText));
+  for (std::string* const text : {&request.type, &request.name, &request.at}) {
+    if (text->size() > kMaxText) text->resize(kMaxText);
+    const bool isNeeded = text == &request.type || (text == &request.name && !isScene);
+    if ((isNeeded || !text->empty()) && !isPlain(*text))
+      fail(text->empty() ? kUsage
+                         : "expected names of printable ASCII characters, found others, a blank, a bracket or a quote");
+  }
+  if (isScene && !request.name.empty()) request.unused += (request.unused.empty() ? "name " : " name ") + request.name;
+  if (!isScene && !isName(request.name))
+    fail(fmt::format("expected a name without /, [ and ], and neither . nor .., found {}", request.name));
+  return why;
+}
+
+std::string RequestEffector::act(const Element& action) {
+  AgentAspect* const nearest = agent();
+  if (!nearest) return "expected an agent above this effector, found none";
+  AgentAspect& root = nearest->outermost();
+  Request request;
+  std::string why = read(action, request);
+  const auto* const control = find<GameControl>(IGameControl::kPath);
+  request.required = control && control->requiresWhatItAsks(root);
+  if (why.empty() && pending_.size() >= kMaxPending)
+    why = fmt::format("expected at most {} requests in a cycle, found more", kMaxPending);
+  if (!why.empty()) {
+    answer(root, request, why);
+    return why;
+  }
+  const std::string unused = request.unused;
+  pending_.push_back(std::move(request));
+  return unused.empty() ? std::string() : fmt::format("{}, found {} beside, which has no effect", kUsage, unused);
+}
+
+void RequestEffector::answerRefused(const Element& action, const std::string& why) {
+  AgentAspect* const nearest = agent();
+  if (!nearest) return;
+  AgentAspect& root = nearest->outermost();
+  Request request;
+  read(action, request);
+  const auto* const control = find<GameControl>(IGameControl::kPath);
+  request.required = control && control->requiresWhatItAsks(root);
+  answer(root, request, why);
+}
+
+void RequestEffector::answer(AgentAspect& root, const Request& request, std::string why) {
+  const bool isScene = request.kind == Kind::scene;
+  if (!why.empty() && request.required)
+    if (auto* const control = find<GameControl>(IGameControl::kPath))
+      control->reject(root, fmt::format("it requires {}, which is refused: {}",
+                                        request.type.empty() ? "a part" : request.type, why));
+  if (auto* const answers = find<RequestPerceptor>(fmt::format("../{}", RequestPerceptor::kName)))
+    answers->add(isScene || request.name.empty() ? request.type : request.name, std::move(why), request.unused);
+}
+
+void RequestEffector::saveState(StateWriter& out) const {
+  out.write(parts_);
+  out.write(static_cast<std::int64_t>(pending_.size()));
+  for (const Request& r : pending_) {
+    out.write(static_cast<int>(r.kind));
+    for (const std::string* text : {&r.type, &r.name, &r.at, &r.unused}) out.write(*text);
+    out.write(r.required);
+  }
+}
+
+void RequestEffector::loadState(StateReader& in) {
+  parts_ = static_cast<int>(in.readInteger());
+  pending_.clear();
+  for (std::size_t n = in.readCount(); n > 0; --n) {
+    Request r;
+    r.kind = static_cast<Kind>(in.readInteger());
+    for (std::string* text : {&r.type, &r.name, &r.at, &r.unused}) *text = in.readString();
+    r.required = in.readBool();
+    pending_.push_back(std::move(r));
+  }
 }
 
 void RequestEffector::prepare(const Event&) {
-  if (pending_.empty()) return;
-  AgentAspect* const nearest = agent();
-  const std::vector<Request> requests = std::exchange(pending_, {});
+  AgentAspect* const nearest = pending_.empty() ? nullptr : agent();
   if (!nearest) return;
   const Ref<AgentAspect> root(&nearest->outermost());
-  const Ref<RequestPerceptor> answers(find<RequestPerceptor>(fmt::format("../{}", RequestPerceptor::kName)));
+  // What it asks for beside its robot waits with it.
+  if (const auto* const loader = root->find<SceneEffector>(GameControl::kCreateEffector);
+      loader && loader->late() && !loader->loaded())
+    return;
+  const std::vector<Request> requests = std::exchange(pending_, {});
   const Ref<RequestEffector> self(this);  // a judge may be a script that removes the agent
   for (const Request& request : requests) {
-    const bool early = !hasRobot(*root);
     std::string why;
     try {
-      why = early ? "there is no robot yet: expected (scene <file>) first" : grant(request, *root);
+      why =
+          gamecontrol::hasRobot(*root) ? grant(request, *root) : "there is no robot yet: expected (scene <file>) first";
     } catch (const std::exception& e) {
       // The agent need not know the host's folders.
       why = "it cannot be made, the log of the host says why";
       if (self) refuse(static_cast<int>(request.kind), [&] { return fmt::format("{}: {}", request.type, e.what()); });
     }
     if (!self || !root) return;
-    if (!why.empty() && request.required && !early)
-      if (auto* const control = find<GameControl>(IGameControl::kPath))
-        control->reject(*root, fmt::format("it requires {}, which is refused: {}", request.type, why));
-    if (answers) answers->add(request.kind == Kind::scene ? request.type : request.name, std::move(why));
+    answer(*root, request, std::move(why));
   }
 }
 
@@ -201,7 +325,7 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
                          request.kind == Kind::perceptor ? "such as GPS" : "such as HingeEffector", request.type);
     if (type->isA(kCamera) && countBelow(root, kCamera) >= maxCameras_)
       return fmt::format("the robot has {} cameras, more are not granted", maxCameras_);
-    if (parent->find(request.name)) return fmt::format("there is a node {} already", request.name);
+    if (parent->child(request.name)) return fmt::format("there is a node {} already", request.name);
   }
 
   // The judges, then the tree.
@@ -215,6 +339,7 @@ std::string RequestEffector::grant(const Request& request, AgentAspect& root) {
     if (std::string why = control->judgeRequest(root, {request.kind, request.type, request.name, *parent});
         !why.empty() || !self)
       return why;
+  if (parent->child(request.name)) return fmt::format("a rule has made a node {} there", request.name);
   ++parts_;
   parent->create(request.type, request.name);
   if (auto* const scenes = kernel().root().find<ISceneServer>()) scenes->markModified();

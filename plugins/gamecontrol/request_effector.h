@@ -10,8 +10,14 @@
 
 namespace spark {
 
+namespace gamecontrol {
+/// True if the agent has a robot, loaded by itself or made by a rule: more than what game control gives it, and than a
+/// group of colliders, which rules give to agents that are still without one. Objects that are agents need none.
+bool hasRobot(const AgentAspect& root);
+}  // namespace gamecontrol
+
 /// Tells an agent what became of its requests: `(granted (name gps2))`, `(refused (name gps2) (why there is no class
-/// GPX))`, once each.
+/// GPX))`, once each. What a request says beyond that is in `(unused colour red)`.
 class RequestPerceptor : public Perceptor {
   SPARK_CLASS(RequestPerceptor, Perceptor)
  public:
@@ -20,8 +26,8 @@ class RequestPerceptor : public Perceptor {
   static void describe(Description<RequestPerceptor>& d) {
     d.doc("Reports what became of requests: (granted (name n)), (refused (name n) (why words...)).");
   }
-  /// `why`: "" if the request was granted.
-  void add(std::string name, std::string why) { answers_.emplace_back(std::move(name), std::move(why)); }
+  /// `why`: "" if the request was granted. `unused`: words of it that have no effect.
+  void add(std::string name, std::string why, std::string unused = {});
   void sense(Predicates& out, const Event& event) override;
 
  protected:
@@ -29,7 +35,12 @@ class RequestPerceptor : public Perceptor {
   void loadState(StateReader& in) override;
 
  private:
-  std::vector<std::pair<std::string, std::string>> answers_;
+  struct Answer {
+    std::string name, why, unused;
+  };
+  static constexpr std::size_t kMost = 1024;  ///< answers in one message; the rest of a flood is counted
+  std::vector<Answer> answers_;
+  std::int64_t unanswered_ = 0;
 };
 
 /// `(request (perceptor GPS) (name gps2) (at torso))`, `(request (effector HingeEffector) (name lae9) (at laj9))`,
@@ -48,18 +59,25 @@ class RequestEffector : public Effector {
   static void addTo(AgentAspect& aspect, const std::string& folder);
   std::string predicate() const override { return "request"; }
   std::string act(const Element& action) override;
+  /// Answers a request that a rule refuses as an action; `why`: one line without a full stop at its end.
+  void answerRefused(const Element& action, const std::string& why);
 
  protected:
-  void saveState(StateWriter& out) const override { out.write(parts_); }
-  void loadState(StateReader& in) override { parts_ = static_cast<int>(in.readInteger()); }
+  void saveState(StateWriter& out) const override;
+  void loadState(StateReader& in) override;
 
  private:
   struct Request {
-    PartRequest::Kind kind;
+    PartRequest::Kind kind = PartRequest::Kind::perceptor;
     std::string type, name, at;
-    bool required;  ///< the agent takes part only if it is granted
+    std::string unused;     ///< its words that have no effect
+    bool required = false;  ///< the agent takes part only if it is granted
   };
+  /// Reads an action. Returns "", or why it is no request: what could be read is in `request`.
+  static std::string read(const Element& action, Request& request);
   void prepare(const Event&);
+  /// Answers a request: it was granted if `why` is "". An agent that requires what is refused does not take part.
+  void answer(AgentAspect& root, const Request& request, std::string why);
   /// Makes the node. Returns "", or why it cannot be made.
   std::string grant(const Request& request, AgentAspect& root);
   Node* parentFor(const Request& request, AgentAspect& root) const;

@@ -46,30 +46,32 @@ std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& re
 }
 
 std::string ScriptAspect::judgeAction(AgentAspect& agent, const Effector&, const Element& action) {
-  if (!actions_ || (actions_->empty() && !actionFailed_)) return {};
+  if (!actions_ || (actions_->empty() && actionFailed_ == kNever)) return {};
   const Value data(List{agent.path(), gamecontrol::toValue(action)});
   return verdict(kAction, data, &ScriptAspect::actionFailed_);
 }
 
-/// A rule that fails grants nothing. One that took too long has been switched off: no handler of it answers any more.
-std::string ScriptAspect::verdict(std::string_view channel, const Value& data, bool ScriptAspect::*failed) {
+/// All handlers are asked, and one that refuses is enough. A rule that fails grants nothing: neither when a handler
+/// fails, nor while one that took too long, and has been switched off, does not answer any more.
+std::string ScriptAspect::verdict(std::string_view channel, const Value& data, std::int64_t ScriptAspect::*failed) {
   constexpr const char* kFailed = "the rule failed, the log says why";
-  const Value none(List{"no handler has answered"});
   const Ref<ScriptAspect> self(this);  // its script may remove it
   Kernel& kernel = this->kernel();
   const std::int64_t faults = kernel.faults();
-  const Value answer = gamecontrol::askScripts(*this, channel, gamecontrol::eventNow(simulation_.get()), &data, none);
-  const bool unanswered = answer == none;
-  const bool fails = kernel.faults() != faults || (unanswered && self && this->*failed);
-  if (self) this->*failed = fails;
+  const List answers = gamecontrol::askScripts(*this, channel, gamecontrol::eventNow(simulation_.get()), &data);
+  const auto count = static_cast<std::int64_t>(answers.size());
+  const bool fails = kernel.faults() != faults || (self && count <= this->*failed);
+  if (self) this->*failed = fails ? count : kNever;
   if (fails) return kFailed;
-  if (unanswered || answer.isNil() || answer.isString())
-    return unanswered ? std::string() : gamecontrol::reasonOf(answer);
-  kernel.countFault();
-  if (self && !std::exchange(isWrong_, true))
-    kernel.log().error("handler of '{}' at {}: {} that says why it refuses. This is logged once.", channel, path(),
-                       gamecontrol::reasonOf(answer));
-  return kFailed;
+  for (const Value& answer : answers) {
+    if (answer.isNil() || answer.isString()) continue;
+    kernel.countFault();
+    if (self && !std::exchange(isWrong_, true))
+      kernel.log().error("handler of '{}' at {}: {} that says why it refuses. This is logged once.", channel, path(),
+                         gamecontrol::reasonOf(answer));
+    return kFailed;
+  }
+  return gamecontrol::reasonOf(answers);
 }
 
 void ScriptAspect::tell(std::string_view channel, const AgentAspect& agent) {

@@ -12,8 +12,8 @@ namespace spark {
 /// runs when an agent asks for a perceptor, an effector or a scene file; `event.data` is { path of the agent's aspect,
 /// "perceptor", class, name, file }, and a text that it returns refuses the request; `file` is the scene file that the
 /// part comes with, or "". `action` runs when an agent acts; `event.data` is { path of the agent's aspect, action },
-/// and a text that it returns refuses the action. Without a verdict, as its script failed or returned something else,
-/// what it judges is refused.
+/// and a text that it returns refuses the action. All handlers are asked, and one that refuses is enough. Without a
+/// verdict, as a script failed or returned something else, what it judges is refused.
 class ScriptAspect : public ControlAspect, public IAgentJudge {
   SPARK_CLASS(ScriptAspect, ControlAspect)
  public:
@@ -30,12 +30,13 @@ class ScriptAspect : public ControlAspect, public IAgentJudge {
  private:
   void script(const std::string& file, const Value& arguments);
   void tell(std::string_view channel, const AgentAspect& agent);
-  /// Why the handlers of `channel` refuse, or "". `failed`: whether they failed the last time.
-  std::string verdict(std::string_view channel, const Value& data, bool ScriptAspect::*failed);
+  static constexpr std::int64_t kNever = -1;
+  /// Why the handlers of `channel` refuse, or "". `failed`: how many of them answered when one failed the last time.
+  std::string verdict(std::string_view channel, const Value& data, std::int64_t ScriptAspect::*failed);
 
   Link<ISimulation> simulation_;
   Channel* actions_ = nullptr;  ///< of `action`
-  bool requestFailed_ = false, actionFailed_ = false;
+  std::int64_t requestFailed_ = kNever, actionFailed_ = kNever;
   bool isWrong_ = false;  ///< it has returned what is no verdict
 };
 

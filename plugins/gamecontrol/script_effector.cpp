@@ -28,8 +28,8 @@ void ScriptEffector::script(const std::string& file, const Value& arguments) {
 
 std::string ScriptEffector::act(const Element& action) {
   const Value data = gamecontrol::toValue(action);
-  const Value answer = gamecontrol::askScripts(*this, kPerform, gamecontrol::eventNow(simulation_.get()), &data);
-  return gamecontrol::reasonOf(answer);
+  return gamecontrol::reasonOf(
+      gamecontrol::askScripts(*this, kPerform, gamecontrol::eventNow(simulation_.get()), &data));
 }
 
 }  // namespace spark

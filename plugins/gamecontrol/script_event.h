@@ -14,15 +14,15 @@
 
 namespace spark::gamecontrol {
 
-/// Emits the event `channel` at `node` only and returns what the last of its scripts' handlers returned; `answer` if
-/// there are none, or if they failed. The scripts may delete the node. Simulation thread.
-inline Value askScripts(Leaf& node, std::string_view channel, Event event, const Value* data = nullptr,
-                        Value answer = {}) {
+/// Emits the event `channel` at `node` only and returns what each of its scripts' handlers returned, in order, without
+/// those that failed. The scripts may delete the node. Simulation thread.
+inline List askScripts(Leaf& node, std::string_view channel, Event event, const Value* data = nullptr) {
+  Value answers(List{});
   event.name = channel;
   event.data = data;
-  event.answer = &answer;
+  event.answer = &answers;
   node.kernel().events().channel(channel).emitAt(node, event);
-  return answer;
+  return std::move(answers.toList());
 }
 
 /// What a script returned as the reason of a refusal, one line for the log or the agent; "" for nil: no refusal. Only a
@@ -36,6 +36,13 @@ inline std::string reasonOf(const Value& answer) {
     return fmt::format("its script returned a reason of {} bytes: expected at most {}", answer.toString().size(),
                        kMost);
   return answer.toString();
+}
+
+/// The first reason among what scripts returned; "": there is none.
+inline std::string reasonOf(const List& answers) {
+  for (const Value& answer : answers)
+    if (std::string why = reasonOf(answer); !why.empty()) return why;
+  return {};
 }
 
 /// An event of the present cycle; of cycle 0 if there is no run loop.

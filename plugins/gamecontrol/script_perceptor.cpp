@@ -59,7 +59,9 @@ void ScriptPerceptor::share(std::uint64_t round) {
   if (std::exchange(round_, round) == round) return;
   percept_ = {};
   const Ref<ScriptPerceptor> self(this);
-  Value answer = gamecontrol::askScripts(*this, kPerceive, gamecontrol::eventNow(simulation_.get()));
+  Value answer;  // of the last handler that has one
+  for (Value& one : gamecontrol::askScripts(*this, kPerceive, gamecontrol::eventNow(simulation_.get())))
+    if (!one.isNil()) answer = std::move(one);
   if (!self || answer.isNil()) return;
   if (const std::string why = whyNot(answer); why.empty())
     percept_ = std::move(answer);

@@ -57,7 +57,12 @@ void Subscription::run(const Event& event) {
       lua_pushnil(L);
     lua_setfield(L, -2, "data");
     lua_call(L, 2, event.answer ? 1 : 0);
-    if (event.answer) *event.answer = returned(L, function);
+    if (!event.answer) return;
+    Value answer = returned(L, function);
+    if (event.answer->isList())
+      event.answer->toList().push_back(std::move(answer));
+    else
+      *event.answer = std::move(answer);
   });
   if (!failure) return;
   runtime.report(*failure, *this);

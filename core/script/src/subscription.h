@@ -23,7 +23,8 @@ struct Subscription {
   ~Subscription();
   /// Removes the handler from its channel.
   void remove();
-  /// Calls the handler. A failure is logged; a handler that used up its budget is removed.
+  /// Calls the handler. What it returns is appended to the list that the emitter wants to have answered, or replaces
+  /// the answer. A failure is logged; a handler that used up its budget is removed.
   void run(const Event& event);
 };
 
