@@ -268,12 +268,22 @@ end
 --- the node there whose children appear here, "/" by default; `name`: how this host introduces itself; `waits` false:
 --- the other host does not wait for handlers here.
 function mount(t)
+  if type(t) ~= "table" or type(t[1]) ~= "string" then
+    error('mount: expected the path of the new node first, as in mount{ "/usr/match", address = "127.0.0.1:3400" }', 2)
+  end
+  if type(t.address) ~= "string" or t.address == "" then
+    error("mount: expected an address, host:port or a Unix socket, found " .. tostring(t.address), 2)
+  end
   plugin "remote"
   if not get("/sys/server/remote") then new("RemoteServer", "/sys/server/remote") end
   local node = new("RemoteMount", t[1])
-  node.address, node.of, node.clientName, node.waits = t.address, t.of or "/", t.name or "remote", t.waits ~= false
-  node:connect(t.token or "")
-  return node
+  local good, why = pcall(function()
+    node.address, node.of, node.clientName, node.waits = t.address, t.of or "/", t.name or "remote", t.waits ~= false
+    node:connect(t.token or "")
+  end)
+  if good then return node end
+  node:delete() -- a config that goes on must not find it
+  error((tostring(why):gsub("^house%.lua:%d+: ", "")), 2)
 end
 
 --- The socket of sparkctl, which only the host's own user can open. The socket and the page answer requests about

@@ -28,6 +28,8 @@ constexpr std::chrono::seconds kQuiet{1};          // without a message, after w
 constexpr std::uint64_t kNoRequest = ~std::uint64_t{0};
 // Decisions on the tape: the other host was quiet; a wait ends; an event waits for the next cycle.
 constexpr const char *kIsQuiet = "remote quiet", *kWaitEnds = "remote wait", *kLater = "remote later";
+// Kinds of conversations: what came while a config waited, and why there was no connection.
+constexpr const char *kCame = "came", *kFailed = "failed";
 constexpr const char* kAsked = "another host is asked about it just now";
 constexpr const char* kPasses = "it passes an event of another host just now";
 }  // namespace
@@ -101,13 +103,16 @@ void RemoteMount::connect(const Secret& token) {
   ended_ = false;
   replayed_.clear();
   replays_ = tape_ && tape_->playing();
-  if (!replays_) {
-    wire_ = open();
-    wire_->setLimit(kMostHostBytes);
-  }
+  saidReady_ = false;
+  if (!replays_) try {
+      wire_ = open();
+      wire_->setLimit(kMostHostBytes);
+    } catch (const std::exception& e) {
+      keep({kFailed, e.what()});
+      throw;
+    }
   send({kHello, kProtocol, token.text, clientName_, of_, ancestor<SceneNode>() != nullptr});
   lostBecause_.clear();
-  saidReady_ = false;
   awaitReply(0);
   ask(kGet, *this, {"name"});  // the tree comes before this answer
 }
@@ -133,6 +138,7 @@ std::string RemoteMount::pathOf(const Leaf& node) const {
 }
 
 Value RemoteMount::ask(std::string_view request, const Leaf& node, List arguments) {
+  refuseIfFrozen(node);
   List reply = askAbout(request, node, std::move(arguments));
   // A method may remove its own node, as it may in this host, and a set may rename it.
   if (request == kCall || request == kSet) mirror_.catchUp();
@@ -145,20 +151,34 @@ Value RemoteMount::read(const Leaf& node, const std::string& property) {
   std::optional<Value> last;
   if (const Value* const known = mirror_.value(node, property)) last = *known;
   if (last && (!isConnected() || (server_ && server_->inCycle()) || isQuiet())) return *last;
-  const auto silence = [&] {
-    return Error(fmt::format("{}: the host at {} has been quiet for {:.1f} s, and the value was never read before",
-                             node.path(), address_, std::chrono::duration<double>(Clock::now() - came_).count()));
+  const auto unknown = [&] {
+    return Error(fmt::format("{}: the host at {} has been quiet {}, and the value was never read before", node.path(),
+                             address_, silence()));
   };
   const bool quiet = isQuiet();
-  if (isConnected() && !last && quiet_) throw silence();
+  if (isConnected() && !last && quiet_) throw unknown();
   const List reply = askAbout(kGet, node, {property, true},
                               last || quiet ? std::optional(std::min(patience_, timeout_)) : std::nullopt);
   if (reply.empty()) {
     if (last) return *last;
-    throw silence();
+    throw unknown();
   }
   if (reply.size() > 3 && reply[3].isBool() && reply[3].toBool()) mirror_.keep(node, property, reply[2]);
   return reply.size() > 2 ? reply[2] : Value();
+}
+
+/// How long it is that a message came, as words.
+std::string RemoteMount::silence() const {
+  return fmt::format("for {:.1f} s", std::chrono::duration<double>(Clock::now() - came_).count());
+}
+
+/// What is set or called must not wait for a host that hangs, nor happen when it goes on: one that was quiet is asked
+/// for a name first.
+void RemoteMount::refuseIfFrozen(const Leaf& node) {
+  if (!isConnected() || !saidReady_ || !isQuiet()) return;
+  if (!quiet_ && !askAbout(kGet, *this, {"name"}, std::min(patience_, timeout_)).empty()) return;
+  throw Error(fmt::format("{}: the host at {} has been frozen {}: nothing can be set or called there until it goes on",
+                          node.path(), address_, silence()));
 }
 
 /// True if the other host owes an answer, or has sent nothing for long.
@@ -236,9 +256,13 @@ List RemoteMount::awaitRecorded(std::uint64_t number, bool patient) {
     if (!files)
       throw Error(
           fmt::format("{}: a recording has what the other host sent as files: expected files() in the config", path()));
-    ++conversations_;
+    nextConversation();
     for (const Value& message : decode(files->read(conversationName())))
       if (message.isString()) replayed_.push_back(message.toString());
+    if (replayed_.front() == kFailed) {
+      replays_ = false;
+      throw Error(replayed_.back());
+    }
     replayed_.pop_front();  // the kind
     if (handle()) return reply;
   } else {
@@ -253,6 +277,9 @@ List RemoteMount::awaitRecorded(std::uint64_t number, bool patient) {
   lose(ended_ ? "it left in the recorded run" : "it did not answer in the recorded run");
   throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
 }
+
+/// A mount that failed may be made again at the same place: no two waits have one number.
+void RemoteMount::nextConversation() { conversations_ = kernel().root().require<RemoteServer>().nextConversation(); }
 
 /// The name as a file of what came while the config waited for an answer.
 std::string RemoteMount::conversationName() const { return fmt::format("remote{}.{}", path(), conversations_); }
@@ -273,9 +300,15 @@ void RemoteMount::endWait() {
     tape_->decide(kWaitEnds, key_, true, false);
     return;
   }
-  ++conversations_;
-  conversation_.insert(conversation_.begin(), "came");
-  kernel().sources().add("file", conversationName(), encode(std::exchange(conversation_, {})));
+  conversation_.insert(conversation_.begin(), kCame);
+  keep(std::exchange(conversation_, {}));
+}
+
+/// Keeps what came of a wait while the config runs, for recordings.
+void RemoteMount::keep(const List& conversation) {
+  if (!tape_) return;
+  nextConversation();
+  kernel().sources().add("file", conversationName(), encode(conversation));
 }
 
 /// The next message that has arrived; valid until the next one is taken.
@@ -345,6 +378,7 @@ void RemoteMount::listen(Leaf& node, const std::string& channel) {
   for (const auto& [number, listener] : listeners_)
     if (listener.node.get() == &node && listener.channel->name() == channel) return;
   const std::uint64_t number = ++lastListener_;
+  refuseIfFrozen(node);
   const InUse asked(node, kAsked);
   if (!isConnected()) throw Error(fmt::format("the link to the host at {} is lost: {}", address_, lostBecause_));
   const std::uint64_t request = ++lastRequest_;
@@ -412,7 +446,7 @@ void RemoteMount::pass(const List& event) {
       !event[4].isNumber() || !event[5].isInteger() || !event[7].isBool())
     return lose("it sent an event that is not understood");
   const std::int64_t number = event[1].toInteger();
-  Value answer;
+  Value answers(List{});
   const auto at = listeners_.find(static_cast<std::uint64_t>(event[2].toInteger()));
   if (at != listeners_.end() && at->second.node)
     at->second.channel->emitAt(*at->second.node, {.name = at->second.channel->name(),
@@ -420,8 +454,8 @@ void RemoteMount::pass(const List& event) {
                                                   .step = event[4].toNumber(),
                                                   .cycle = event[5].toInteger(),
                                                   .data = event[6].isNil() ? nullptr : &event[6],
-                                                  .answer = event[7].toBool() ? &answer : nullptr});
-  if (number != 0) send({kDone, number, answer});
+                                                  .answer = event[7].toBool() ? &answers : nullptr});
+  if (number != 0) send({kDone, number, answers});
 }
 
 }  // namespace spark

@@ -73,11 +73,15 @@ class RemoteMount : public Node, public IRemoteLink, public IConnectionConsumer 
   std::string pathOf(const Leaf& node) const;
   List awaitReply(std::uint64_t number, std::optional<double> patience = {});
   List awaitRecorded(std::uint64_t number, bool patient);
+  std::string silence() const;
+  void refuseIfFrozen(const Leaf& node);
   bool isQuiet();
   bool isQuietNow();
   std::optional<std::string_view> take();
   void note(std::string_view message);
   void endWait();
+  void keep(const List& conversation);
+  void nextConversation();
   std::string conversationName() const;
   void send(const List& message) {
     if (wire_) wire_->send(message);
@@ -116,7 +120,7 @@ class RemoteMount : public Node, public IRemoteLink, public IConnectionConsumer 
   std::deque<std::string> replayed_;  ///< messages of the recording, to be handled
   std::string taken_;                 ///< the last one of them
   List conversation_;                 ///< messages while the config runs
-  std::size_t conversations_ = 0;     ///< requests while configs ran
+  std::size_t conversations_ = 0;     ///< number of the last wait while a config ran
   std::uint64_t key_ = 0;             ///< of the link on the tape
   bool tellLost_ = false, passing_ = false, saidReady_ = false;
 };

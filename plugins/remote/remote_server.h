@@ -41,6 +41,9 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   /// The token, for what prints it.
   const std::string& token() const { return token_; }
 
+  /// The number of a wait for an answer while a config runs, from 1: mounts name by it what they heard.
+  std::size_t nextConversation() { return ++conversations_; }
+
   void poll() override;
   bool wait(double seconds) override;
   bool canWait() const override { return !mounts_.empty(); }
@@ -87,6 +90,7 @@ class RemoteServer : public Node, public IInputSource, public IInputGate, public
   bool inCycle_ = false;
   bool released_ = false;        ///< those that were expected have come
   std::int64_t lateEvents_ = 0;  ///< of those that have gone
+  std::size_t conversations_ = 0;
   Channel* lost_ = nullptr;
   Channel* joined_ = nullptr;
   Link<ISimulation> simulation_;

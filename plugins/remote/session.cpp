@@ -228,7 +228,12 @@ void Session::pass(std::uint64_t number, bool waits, const Event& event) {
   if (asked == 0) return;
   reply_ = {};
   await(asked);
-  if (done_ == asked && event.answer && !reply_.isNil()) *event.answer = std::move(reply_);
+  if (done_ != asked || !event.answer || !reply_.isList()) return;
+  for (Value& one : reply_.toList())  // of one handler each
+    if (event.answer->isList())
+      event.answer->toList().push_back(std::move(one));
+    else
+      *event.answer = std::move(one);
 }
 
 /// Answers requests until the remote handlers are done with an event.

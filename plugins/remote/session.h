@@ -94,7 +94,7 @@ class Session {
   SceneFeed scene_;
   std::map<std::uint64_t, Listener> listeners_;  ///< by the remote host's number
   std::uint64_t asked_ = 0, done_ = 0;           ///< numbers of the last event that is awaited, and that was answered
-  Value reply_;                                  ///< what its handlers answered
+  Value reply_;                                  ///< what each of its handlers answered
   std::int64_t lateEvents_ = 0;
   bool open_ = false;      ///< it has said hello
   bool ready_ = false;     ///< it has said so
