@@ -44,7 +44,8 @@ bool ZipFileSystem::refresh() {
     archive_.reset();
     return false;
   }
-  const std::int64_t parts[] = {s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_size, static_cast<std::int64_t>(s.st_ino)};
+  const std::int64_t parts[] = {s.st_mtim.tv_sec,  s.st_mtim.tv_nsec, s.st_ctim.tv_sec,
+                                s.st_ctim.tv_nsec, s.st_size,         static_cast<std::int64_t>(s.st_ino)};
   const std::uint64_t identity =
       std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
   if (archive_ && identity == identity_) return true;

@@ -92,8 +92,9 @@ std::uint64_t DirectoryFileSystem::stamp(const std::string& resource) {
     inside_.insert_or_assign(resource, identity);
   }
 
-  // Time of the last change, size and inode.
-  const std::int64_t parts[] = {s.st_mtim.tv_sec, s.st_mtim.tv_nsec, s.st_size, static_cast<std::int64_t>(s.st_ino)};
+  // Times of the last changes of contents and of anything (a copy may keep the first), size and inode.
+  const std::int64_t parts[] = {s.st_mtim.tv_sec,  s.st_mtim.tv_nsec, s.st_ctim.tv_sec,
+                                s.st_ctim.tv_nsec, s.st_size,         static_cast<std::int64_t>(s.st_ino)};
   return std::max<std::uint64_t>(1, hashBytes({reinterpret_cast<const char*>(parts), sizeof parts}) >> 8);
 }
 

@@ -103,7 +103,12 @@ TEST_CASE("an archive that is rewritten in the same second with the same size is
   CHECK(a.server->stamp("x") == before);
   REQUIRE(writtenAt("two", 2) == size);
   CHECK(a.server->read("x") == "two");
-  CHECK(a.server->stamp("x") != before);
+  const auto second = a.server->stamp("x");
+  CHECK(second != before);
+  // A copy keeps the time of writing too: what is left is the time of the change, which has ticks.
+  do writtenAt("six", 2);
+  while (a.server->stamp("x") == second);
+  CHECK(a.server->read("x") == "six");
 }
 
 TEST_CASE("a file that is not an archive, too large or encrypted is refused with the reason") {

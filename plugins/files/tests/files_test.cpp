@@ -1,5 +1,8 @@
 #include "api/files.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -133,6 +136,29 @@ TEST_CASE("a stamp changes with the file and with the target of a link") {
   CHECK(f.server->stamp("link") == longer);
   fs::remove(link);
   CHECK(f.server->stamp("link") == 0);
+}
+
+TEST_CASE(
+    "a stamp changes with a file that is rewritten in place with its size and its time of writing, as copies keep it") {
+  Files f;
+  f.folder.write("a.rsg", "1");
+  const std::string file = (f.folder.path() / "a.rsg").string();
+  const auto status = [&file] {
+    struct stat s {};
+    REQUIRE(::stat(file.c_str(), &s) == 0);
+    return s;
+  };
+  const struct stat first = status();
+  const auto before = f.server->stamp("a.rsg");
+  const auto changedAt = [](const struct stat& s) { return std::pair(s.st_ctim.tv_sec, s.st_ctim.tv_nsec); };
+  do {  // the clock of file systems has ticks
+    std::ofstream(file, std::ios::in) << '2';
+    const timespec times[] = {first.st_atim, first.st_mtim};
+    REQUIRE(utimensat(AT_FDCWD, file.c_str(), times, 0) == 0);
+  } while (changedAt(status()) == changedAt(first));
+  REQUIRE(status().st_ino == first.st_ino);
+  REQUIRE(status().st_size == first.st_size);
+  CHECK(f.server->stamp("a.rsg") != before);
 }
 
 TEST_CASE("a file above the size limit is refused") {
