@@ -188,11 +188,17 @@ Json attach(Kernel& kernel, const Leaf& self, const Json& request) {
   for (const auto& server : self.parent()->children())
     servers.emplace_back(*server, "a script from outside runs", InUse::kAllBelow);
   const std::string name = request.value("name", std::string("sparkctl"));
-  const Value v = kernel.root()
-                      .require<IScriptText>(IScriptServer::kPath)
-                      .attachText(nodeOf(kernel, request), textOf(request, "text"), name, true);
+  const List results = kernel.root()
+                           .require<IScriptText>(IScriptServer::kPath)
+                           .attachText(nodeOf(kernel, request), textOf(request, "text"), name, true);
   if (auto* const scenes = kernel.root().find<ISceneServer>()) scenes->markModified();
-  return {{"ok", true}, {"value", toJson(v)}, {"text", v.isNil() ? "" : v.plain()}};
+  const bool isNothing = results.empty() || (results.size() == 1 && results[0].isNil());
+  std::string text;
+  for (const Value& v : results) text.append(text.empty() ? "" : "\n").append(v.plain());
+  return {{"ok", true},
+          {"value", results.empty() ? Json() : toJson(results[0])},
+          {"values", toJson(results)},
+          {"text", isNothing ? "" : text}};
 }
 
 Json unload(Kernel& kernel, const Json& request) {

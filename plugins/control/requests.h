@@ -10,8 +10,9 @@
 ///     {"do":"set","path","property","value"}        as get, after the change
 ///     {"do":"call","path","method","arguments":[]}  {"ok":true,"text","value"}
 ///     {"do":"make","path","class"}                  {"ok":true,"text"}: makes a node; the text is its path
-///     {"do":"attach","path","text","name"}          {"ok":true,"text","value"}: runs a script at a node, see
-///                                                   lua/README.md; the value is what it returns
+///     {"do":"attach","path","text","name"}          {"ok":true,"text","value","values"}: runs a script at a node,
+///                                                   see lua/README.md; the values are its results, the first one
+///                                                   alone is "value", and "text" has a line for each
 ///     {"do":"watch","path","property"}              {"ok":true,"cycle","time","text","value"}, now and after changes
 ///     {"do":"load","name":"wind"}                   {"ok":true,"text"}: loads a plugin and registers its classes
 ///     {"do":"unload","name":"wind"}                 {"ok":true}

@@ -7,6 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "spark/numbers.h"
+
 namespace spark::json {
 
 namespace {
@@ -66,7 +68,7 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   }
   bool number_float(number_float_t v, const string_t&) override { return add(static_cast<double>(v)); }
   bool string(string_t& v) override {
-    return !binary_ || toBytes(v) ? add(std::string_view(v))
+    return !binary_ || toBytes(v) ? addText(v)
                                   : fail("a character behind U+00FF is no byte: the parser is set to binary");
   }
   bool binary(binary_t&) override { return fail("binary data is no part of the language"); }
@@ -116,11 +118,16 @@ class Builder : public nlohmann::json_sax<nlohmann::json> {
   }
 
  private:
-  template <class T>
-  bool add(T atom) {
+  /// S-expressions need quotes around what is no word, or would be a number without them.
+  bool addText(std::string_view text) {
+    double number = 0;
+    return add(text, !isWord(text) || readWholeNumber(text, number));
+  }
+  template <class... Atom>
+  bool add(Atom... atom) {
     if (full()) return false;
     if (undecided_) out_.open(), undecided_ = false;
-    out_.add(atom);
+    out_.add(atom...);
     if (depth_ == 0) complete_ = out_.size();
     return true;
   }

@@ -119,7 +119,8 @@ bool Connection::fill(double timeout) {
   in_.resize(had + kRoom);
   const auto n = ::recv(socket_, in_.data() + had, kRoom, 0);
   in_.resize(had + static_cast<std::size_t>(std::max<decltype(n)>(n, 0)));
-  if (n == 0) throw std::runtime_error("the server closed the connection");
+  if (n == 0 && in_.empty()) throw Closed("the server closed the connection");
+  if (n == 0) throw std::runtime_error("the server closed the connection in the middle of a message");
   if (n < 0 && errno != EINTR) fail("the connection broke");
   return n > 0;
 }

@@ -57,6 +57,15 @@ int connectTo(const std::string& file) {
   return -1;
 }
 
+/// A request with its line feed. Throws std::runtime_error if a text in it is not UTF-8.
+std::string lineOf(const Json& request) {
+  try {
+    return request.dump() + "\n";
+  } catch (const Json::type_error&) {
+    throw std::runtime_error("expected arguments in UTF-8, found other bytes");
+  }
+}
+
 /// True if a simulation listens on the socket, even if its queue of connections is full.
 bool isAlive(const fs::path& file) {
   const int s = connectTo(file.string());
@@ -64,6 +73,14 @@ bool isAlive(const fs::path& file) {
   return s >= 0 || errno == EAGAIN;
 }
 }  // namespace
+
+bool isUtf8(const std::string& text) {
+  try {
+    return !Json(text).dump().empty();
+  } catch (const Json::type_error&) {
+    return false;
+  }
+}
 
 std::vector<std::string> findSockets(std::vector<std::string>& skipped) {
   std::vector<std::string> out;
@@ -116,7 +133,7 @@ void ControlConnection::wait(short events, Clock::time_point until) {
 
 Json ControlConnection::ask(const Json& request) {
   const auto until = deadline();
-  const std::string line = request.dump() + "\n";
+  const std::string line = lineOf(request);
   for (std::size_t sent = 0; sent < line.size();) {
     const ssize_t n = send(socket_, line.data() + sent, line.size() - sent, MSG_NOSIGNAL);
     if (n > 0)
@@ -143,11 +160,14 @@ Json ControlConnection::receive(Clock::time_point until) {
     else if (n == 0 || errno != EINTR)
       throw std::runtime_error("the simulation has ended");
   }
-  Json answer = Json::parse(received_.substr(0, end));
+  const Json answer = Json::parse(received_.substr(0, end), nullptr, false);
   received_.erase(0, end + 1);
-  if (!answer.value("ok", false))
-    throw std::runtime_error(answer.value("error", "the simulation refused without a reason"));
-  return answer;
+  if (!answer.is_object() || !answer.contains("ok") || !answer["ok"].is_boolean())
+    throw std::runtime_error(fmt::format("the program that answers at {} is no simulation of this version", name_));
+  if (answer["ok"] == true) return answer;
+  const auto error = answer.find("error");
+  throw std::runtime_error(error != answer.end() && error->is_string() ? error->get<std::string>()
+                                                                       : "the simulation refused without a reason");
 }
 
 }  // namespace sparkctl

@@ -15,6 +15,9 @@ using Json = nlohmann::ordered_json;
 /// created or changed are skipped; for each of these a sentence is added to `skipped`.
 std::vector<std::string> findSockets(std::vector<std::string>& skipped);
 
+/// True for text that a request can contain.
+bool isUtf8(const std::string& text);
+
 /// A connection to the control server of a simulation. Functions throw std::runtime_error, with one sentence, if it
 /// does not answer in time, has ended or returns an error.
 class ControlConnection {

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <iterator>
+#include <sstream>
 #include <stdexcept>
 #include <thread>
 
@@ -116,21 +116,44 @@ void showMinus(std::string& word) {
   if (!word.empty() && word[0] == kMinus) word[0] = '-';
 }
 
-/// The text of a script of the caller; `-`: standard input.
+constexpr std::size_t kLongestScript = 30'000;  // bytes: a request has at most twice as many, with its escapes
+
+/// The text of a script of the caller, which may come through a pipe; `-`: standard input. Of one that is too long only
+/// the beginning is read.
 std::string readScript(const std::string& file) {
+  std::error_code ec;
+  if (std::filesystem::is_directory(file, ec)) throw std::runtime_error(fmt::format("{} is a folder", file));
   std::ifstream in;
   if (file != "-") in.open(file, std::ios::binary);
   if (file != "-" && !in) throw std::runtime_error(fmt::format("cannot read {}: {}", file, std::strerror(errno)));
   std::istream& from = file == "-" ? std::cin : in;
-  return {std::istreambuf_iterator<char>(from), {}};
+  std::string text(kLongestScript + 1, '\0');
+  from.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (from.bad()) throw std::runtime_error(fmt::format("cannot read {}: {}", file, std::strerror(errno)));
+  text.resize(static_cast<std::size_t>(from.gcount()));
+  return text;
+}
+
+/// Throws std::runtime_error if the script cannot be sent.
+void checkScript(const std::string& text, const std::string& name) {
+  if (text.empty()) throw std::runtime_error(fmt::format("expected a script, but {} is empty", name));
+  if (text.size() > kLongestScript)
+    throw std::runtime_error(
+        fmt::format("expected a script of at most {} bytes, but {} has more", kLongestScript, name));
+  std::istringstream lines(text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number)
+    if (!isUtf8(line)) throw std::runtime_error(fmt::format("{}:{}: expected UTF-8", name, number));
 }
 
 void attach(ControlConnection& simulation, const std::string& path, const std::string& text, const std::string& name) {
-  constexpr std::size_t kMost = 30'000;  // bytes: a request has at most twice as many, with its escapes
-  if (text.size() > kMost)
-    throw std::runtime_error(fmt::format("expected a script of at most {} bytes, found {}", kMost, text.size()));
-  const std::string result =
-      simulation.ask({{"do", "attach"}, {"path", path}, {"text", text}, {"name", name}}).value("text", "");
+  checkScript(text, name);
+  const std::string result = simulation
+                                 .ask({{"do", "attach"},
+                                       {"path", path},
+                                       {"text", text},
+                                       {"name", std::filesystem::path(name).filename().string()}})
+                                 .value("text", "");
   if (!result.empty()) print(result + "\n");
 }
 
@@ -220,7 +243,7 @@ int main(int argc, char** argv) {
     if (*sets) set(simulation, target, value);
     if (*calls) call(simulation, target, arguments);
     if (*makes) print(simulation.ask({{"do", "make"}, {"class", target}, {"path", value}}).value("text", "") + "\n");
-    if (*attaches) attach(simulation, target, readScript(value), std::filesystem::path(value).filename().string());
+    if (*attaches) attach(simulation, target, readScript(value), value == "-" ? "stdin" : value);
     if (*runs) attach(simulation, path, value, "sparkctl run");
     if (*asks) ask(simulation, target, value);
     if (*watches) watch(simulation, target);

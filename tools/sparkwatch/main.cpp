@@ -58,7 +58,9 @@ class Copy {
   void take(const std::string& message) {
     spark::Predicates environment;
     const spark::ReadResult read = spark::readSexp(message, environment, {}, 1);
-    if (environment.empty()) throw std::runtime_error("this is no message of a monitor port: " + read.message);
+    if (environment.empty() || !(*environment.begin()).isList())
+      throw std::runtime_error("this is no message of a monitor port: expected ((time 0.1))(RSG 0 1)..., found " +
+                               message.substr(0, 40));
     if (const spark::Element time = (*environment.begin()).named("time")) time_ = time.at(1).number();
     frame_->set(message.substr(read.consumed));
     importer_->import(Frame::kName, *scene_, {});
@@ -93,6 +95,12 @@ class Copy {
   double time_ = 0;
 };
 
+/// The exit code of an error.
+static int fail(const std::exception& e) {
+  fmt::print(stderr, "sparkwatch: {}\n", spark::printable(e.what()));
+  return 1;
+}
+
 // NOLINTNEXTLINE(bugprone-exception-escape): options that are set up wrongly end the program
 int main(int argc, char** argv) {
   std::string host = "127.0.0.1", mesh;
@@ -116,8 +124,10 @@ int main(int argc, char** argv) {
       found += copy.print(mesh);
       std::fflush(stdout);
     }
+  } catch (const spark::client::Closed& e) {
+    if (taken == 0 || messages > 0) return fail(e);
   } catch (const std::exception& e) {
-    if (taken == 0 || messages > 0) return fmt::print(stderr, "sparkwatch: {}\n", spark::printable(e.what())), 1;
+    return fail(e);
   }
   if (found > 0) return 0;
   fmt::print(stderr, "sparkwatch: no visible mesh has a name that contains '{}'\n", mesh);

@@ -82,8 +82,12 @@ Script Runtime::read(std::string_view file, std::string_view what, std::vector<f
 }
 
 void Runtime::load(lua_State* L, std::string_view text, std::string_view chunkName, int environment) {
-  constexpr const char* kTextOnly = "t";                                             // binary chunks could crash Lua
+  constexpr const char* kTextOnly = "t";                   // binary chunks could crash Lua
+  constexpr std::string_view kByteOrder = "\xEF\xBB\xBF";  // some editors put it in front of UTF-8
   State::of(L).runtime().kernel.sources().add("script", chunkName.substr(1), text);  // without Lua's mark of its kind
+  if (text.starts_with(LUA_SIGNATURE))
+    throw Error(fmt::format("{}: expected text, found compiled code", chunkName.substr(1)));
+  if (text.starts_with(kByteOrder)) text.remove_prefix(kByteOrder.size());
   if (luaL_loadbufferx(L, text.data(), text.size(), std::string(chunkName).c_str(), kTextOnly) != LUA_OK) lua_error(L);
   lua_pushvalue(L, environment);
   lua_setupvalue(L, -2, 1);  // the first upvalue of a chunk is _ENV
@@ -120,8 +124,19 @@ void Runtime::setGlobal(std::string_view name, const Value& value) {
   if (failure) throw Error(failure->text);
 }
 
-Value Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
-                      const State::Body& pushArguments) {
+namespace {
+/// A result of a script. Throws Error if it is no value.
+Value resultAt(lua_State* L, int index, std::string_view chunkName) {
+  try {
+    return toValue(L, index);
+  } catch (const Error& e) {
+    throw Error(fmt::format("{}: what it returned: {}", chunkName.substr(1), e.what()));
+  }
+}
+}  // namespace
+
+List Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkName, bool isTrusted,
+                     const State::Body& pushArguments) {
   const std::string path = node.path();
   if (!node.isLinked()) throw Error(fmt::format("cannot attach a script to {}: it is not linked into the tree", path));
   std::shared_ptr<State> state = trusted;
@@ -133,7 +148,7 @@ Value Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkN
 
   std::vector<std::weak_ptr<Subscription>> subscribed;
   std::optional<Failure> failure;
-  Value result;
+  List results;
   {
     const Restore running(scriptNode, Ref<Leaf>(&node));
     const Restore collecting(made, &subscribed);
@@ -142,11 +157,11 @@ Value Runtime::attach(Leaf& node, std::string_view text, std::string_view chunkN
       load(L, text, chunkName, lua_gettop(L));
       const int function = lua_gettop(L);
       if (pushArguments) pushArguments(L);
-      lua_call(L, lua_gettop(L) - function, 1);
-      result = toValue(L, -1);
+      lua_call(L, lua_gettop(L) - function, LUA_MULTRET);
+      for (int i = function; i <= lua_gettop(L); ++i) results.push_back(resultAt(L, i, chunkName));
     });
   }
-  if (!failure) return result;
+  if (!failure) return results;
   for (const auto& weak : subscribed)
     if (const auto s = weak.lock()) s->remove();
   throw Error(fmt::format("the script attached to {} failed: {}", path, failure->text));

@@ -56,8 +56,8 @@ class Runtime : public std::enable_shared_from_this<Runtime> {
   Value run(std::string_view text, std::string_view chunkName);
   /// Runs a chunk in an environment of its own for `node`. `pushArguments` pushes the chunk's arguments (`...`); empty:
   /// it has none. Returns its first result. Throws Error; handlers that the chunk has added are then removed.
-  Value attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
-               const State::Body& pushArguments = {});
+  List attach(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
+              const State::Body& pushArguments = {});
   /// Pops a function and adds it as a handler at `node`. Throws Error if the channel does not exist and its name is
   /// similar to that of another one.
   std::shared_ptr<Subscription> subscribe(lua_State* L, Leaf& node, std::string_view channel);

@@ -84,7 +84,7 @@ void* State::allocate(void* self, void* block, std::size_t oldSize, std::size_t 
     if (state.memoryLimit_ != 0 && state.memory_ + newSize - oldSize > state.memoryLimit_) return nullptr;
     state.left_ -= static_cast<std::int64_t>(newSize / kBytesPerInstruction);
     // Count after the next instruction: many more blocks could be allocated until the regular count.
-    if (state.left_ <= 0 && state.depth_ > 0)
+    if ((state.left_ <= 0 || state.isFull()) && state.depth_ > 0)
       lua_sethook(state.threads_[state.depth_ - 1], &State::countHook, LUA_MASKCOUNT, 1);
   }
   void* made = std::realloc(block, newSize);
@@ -96,6 +96,9 @@ void State::countHook(lua_State* L, lua_Debug* ar) {
   State& state = of(L);
   state.left_ -= lua_gethookcount(L);
   if (state.left_ <= 0) state.throwExhausted(L, ar);
+  if (state.isFull()) lua_gc(L, LUA_GCCOLLECT);
+  if (state.isFull())
+    throwForGood(L, ar, fmt::format("the scripts of a host may hold {}", megabytes(kTrustedMemory)).c_str());
   // A config has no budget and may loop forever, so a stop request must end it.
   if (state.runtime_.inConfig && state.runtime_.kernel.stopRequested())
     throwForGood(L, ar, "stopped before the config was done: the host was asked to end. Does this loop end?");
@@ -196,7 +199,7 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   const std::size_t outerLimit = memoryLimit_;
   lua_State* L = threads_[depth_++];
   left_ = budget_ = budget;
-  memoryLimit_ = trusted_ ? 0 : kSandboxMemory;
+  memoryLimit_ = trusted_ ? 2 * kTrustedMemory : kSandboxMemory;
   lua_sethook(L, &State::countHook, LUA_MASKCOUNT, kHookInterval);
   lua_settop(L, 0);
 
@@ -210,7 +213,10 @@ std::optional<Failure> State::run(std::int64_t budget, const Body& body) {
   if (status != LUA_OK) result = std::move(failure_).value_or(Failure{});
   if (result) result->exhausted = left_ <= 0 || isStackOverflow(*result);
   if (status == LUA_ERRMEM)
-    result = Failure{fmt::format("used up its memory: an untrusted script may hold {}", megabytes(kSandboxMemory)), ""};
+    result = Failure{
+        trusted_ ? fmt::format("used up the memory: the scripts of a host may hold {}", megabytes(kTrustedMemory))
+                 : fmt::format("used up its memory: an untrusted script may hold {}", megabytes(kSandboxMemory)),
+        ""};
   if (result && result->text.empty()) result->text = "failed without a message";
 
   failure_.reset();

@@ -33,6 +33,8 @@ inline constexpr std::int64_t kHandlerBudget = 50'000'000;
 inline constexpr std::int64_t kSandboxBudget = 1'000'000;
 /// Bytes of memory or text that cost as much as one instruction.
 inline constexpr std::size_t kBytesPerInstruction = 16;
+/// Memory of all trusted scripts [bytes], which one allocation may exceed to the double.
+inline constexpr std::size_t kTrustedMemory = 1u << 30;
 /// Memory of an untrusted script [bytes].
 inline constexpr std::size_t kSandboxMemory = 2u << 20;
 /// How deep runs may be nested: a handler may raise an event that has a handler, and so on.
@@ -88,6 +90,7 @@ class State : public std::enable_shared_from_this<State> {
   static std::string nearGlobals(lua_State* L, std::string_view text);
   [[noreturn]] static void throwForGood(lua_State* L, lua_Debug* ar, const char* text);
   [[noreturn]] void throwExhausted(lua_State* L, lua_Debug* ar);
+  bool isFull() const { return trusted_ && memory_ > kTrustedMemory; }
 
   Runtime& runtime_;
   Ref<Leaf> sandbox_;
@@ -96,7 +99,7 @@ class State : public std::enable_shared_from_this<State> {
   std::array<lua_State*, kMaxDepth> threads_{};  ///< the Lua thread of each depth
   std::size_t depth_ = 0;                        ///< nested runs
   std::size_t memory_ = 0;                       ///< allocated [bytes]
-  std::size_t memoryLimit_ = 0;                  ///< [bytes], 0: none
+  std::size_t memoryLimit_ = 0;                  ///< [bytes], beyond which nothing is allocated; 0: none
   bool ending_ = false;                          ///< close() was called
   std::int64_t left_ = kUnlimited;               ///< instructions left of the current run
   std::int64_t budget_ = kUnlimited;             ///< instructions of the current run

@@ -144,3 +144,30 @@ TEST_CASE("With `binary` a text brings every byte in both directions") {
   REQUIRE(f.read(R"([["say","\u0100"],["say","\u00ff"]])", &error) == "(say \xff)");
   REQUIRE_THAT(error, Catch::Contains("U+00FF"));
 }
+
+TEST_CASE("A JSON text stays a text whatever it looks like, and is read back as it was written") {
+  Fixture f;
+  const bool binary = GENERATE(false, true);
+  setProperty(*f.host.kernel.root().find("/usr/parser"), "binary", binary);
+  for (const std::string text : {"",     " ",         "5",        "-5",     "007",
+                                 "1e5",  "1.50",      "+.5",      "0x10",   "nan",
+                                 "inf",  "-infinity", "5 ",       "null",   "true",
+                                 "[",    "]",         "[]",       ")(goal", "\"",
+                                 "\\",   "a\tb",      ";x",       "'",      "4294967296000000000000",
+                                 "word", "eight888",  "nine99999"}) {
+    CAPTURE(binary, text);
+    Predicates out, in, back;
+    out.open("say").add(text).add(5).add(5.25).close();
+    CHECK(f.parser->parse(f.written(out), in).message == "");
+    const Element said = *in.begin();
+    CHECK(said.at(1).text() == text);
+    CHECK(said.at(1).token().quoted == (!isWord(text) || said.at(1).isNumber()));
+    CHECK(said.at(2).token().kind == Token::Kind::integer);
+    CHECK(said.at(3).token().kind == Token::Kind::number);
+    std::string expression;
+    writeSexp(in, 2, expression);
+    CHECK(readSexp(expression, back).message == "");
+    CHECK(back.size() == in.size());
+    CHECK((*back.begin()).at(1).text() == text);
+  }
+}

@@ -6,7 +6,9 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "../reports/lib"))
+sys.path.append(str(Path(__file__).resolve().parent.parent / "lib"))
 import mcap  # noqa: E402
+from pieces import piece_of_times  # noqa: E402
 from programs import *  # noqa: E402,F403
 
 import resource
@@ -67,5 +69,14 @@ with Folder() as folder:
     ]
     mcap.write(file, bomb + records[1:])
     tried("six chunks with channels of 200 MB", [], ["--verify"], ["--export", "q.mcap"])
+    # A thousand pieces of inputs of one time, each of which begins anew: 1.7 GB in memory.
+    whole = mcap.unpacked(folder / "a.mcap")
+    (channel,) = struct.unpack_from("<H", whole, whole.index(mcap.text("/spark/inputs")) - 4)
+    after = 10**9 * 60
+    message = mcap.record(5, struct.pack("<HIQQ", channel, 0, after, after) + piece_of_times(20000))
+    mcap.write(file, records + [mcap.chunk(message * 1000, after, after)])
+    tried("a thousand pieces of inputs of one time", ["--verify"])
+    done = run("sparkreplay", file, "--verify", cwd=folder, preexec_fn=limits)
+    judge("what is too much is named", "one time has more than 128 MB of inputs" in done.stdout + done.stderr, done)
     file.write_bytes((folder / "a.mcap").read_bytes())
     tried("and the recording as it was", ["--verify"])

@@ -31,7 +31,7 @@ def judge(what, good, seen=""):
 def run(program, *arguments, cwd=None, **more):
     """Runs a program to its end."""
     return subprocess.run(
-        [str(a) for a in (BIN / program, *arguments)],
+        [a if isinstance(a, bytes) else str(a) for a in (BIN / program, *arguments)],
         capture_output=True,
         text=True,
         errors="replace",

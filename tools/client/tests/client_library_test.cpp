@@ -75,7 +75,26 @@ TEST_CASE("A client sends and receives whole messages with any segment boundarie
   server.send(framed("(b)"));
   CHECK(moved.receive() == "(b)");
   server.leave();
+  CHECK_THROWS_AS(moved.receive(), Closed);
   CHECK_THROWS_WITH(moved.receive(), "the server closed the connection");
+}
+
+TEST_CASE("A server that leaves in the middle of a message is no end") {
+  for (const std::size_t bytes : {1u, 4u, 6u}) {
+    Server server;
+    Connection c("127.0.0.1", server.port);
+    server.accept();
+    server.send(framed("(a)") + framed("(half)").substr(0, bytes));
+    server.leave();
+    CHECK(c.receive() == "(a)");
+    try {
+      c.receive();
+      FAIL("nothing was thrown");
+    } catch (const std::exception& e) {
+      CHECK_FALSE(dynamic_cast<const Closed*>(&e));
+      CHECK(e.what() == std::string("the server closed the connection in the middle of a message"));
+    }
+  }
 }
 
 TEST_CASE("A client reports errors of the server") {

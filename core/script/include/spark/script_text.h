@@ -15,11 +15,11 @@ class Leaf;
 /// Offered by the script server, at IScriptServer::kPath.
 class IScriptText {
  public:
-  SPARK_INTERFACE(IScriptText, 1);
+  SPARK_INTERFACE(IScriptText, 2);
   virtual ~IScriptText() = default;
-  /// As IScriptServer::attach(), for a chunk of text; returns its first result, nil if it has none. `trusted` false:
-  /// the script can only compute and use `self` and its descendants, with limits on instructions and memory.
-  virtual Value attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) = 0;
+  /// As IScriptServer::attach(), for a chunk of text; returns its results. `trusted` false: the script can only
+  /// compute and use `self` and its descendants, with limits on instructions and memory.
+  virtual List attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) = 0;
 };
 
 }  // namespace spark

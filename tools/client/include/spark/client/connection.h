@@ -5,13 +5,19 @@
 
 #include <cstddef>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
 namespace spark::client {
 
+/// The server closed the connection behind a whole message, as it does when it ends.
+class Closed : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// A connection. Owns its socket; movable, not copyable. Not thread safe. Functions throw std::runtime_error with one
-/// sentence when the connection fails.
+/// sentence when the connection fails, Closed when the server has closed it.
 class Connection {
  public:
   /// Longest accepted message [bytes]: a longer one means that the server speaks another protocol.
