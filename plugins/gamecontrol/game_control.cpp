@@ -377,13 +377,20 @@ void GameControl::removeLeaving() {
       forEachAspect([&p](ControlAspect& rule) {
         if (AgentAspect* going = p.aspect()) rule.agentLeaving(*going);
       });
-      if ((aspect = p.aspect())) aspect->parent()->remove(*aspect);
+      if ((aspect = p.aspect())) p.lostMind() ? release(*aspect) : aspect->parent()->remove(*aspect);
     } else if (p.connection()) {
       p.connection()->close("its agent was removed from the scene");
     }
   }
   participants_.erase(removed, participants_.end());
   agentsChanged();
+}
+
+/// The aspect of an object whose mind was removed stays, without what game control gave it: another mind may come.
+void GameControl::release(AgentAspect& aspect) {
+  aspect.setNumber(0);
+  for (const char* given : {RequestEffector::kName, RequestPerceptor::kName})
+    if (Leaf* const part = aspect.child(given)) aspect.remove(*part);
 }
 
 /// The aspect that a mind outside of /usr/agent drives: that of an object, or a rule; nullptr: it drives nothing.
@@ -589,7 +596,13 @@ void GameControl::reject(AgentAspect& agent, const std::string& why) {
   p->reject(why);
 }
 
-List GameControl::senseNow(Node& node) { return questions_.ask(node, ++round_); }
+List GameControl::senseNow(Node& node) {
+  return questions_.ask(node, ++round_, [this](const Perceptor& perceptor) {
+    return std::any_of(participants_.begin(), participants_.end(), [&perceptor](const auto& p) {
+      return p->aspect() && !p->leaving() && isBelow(perceptor, *p->aspect());
+    });
+  });
+}
 
 IConnection* GameControl::connection(const AgentAspect& agent) const {
   const Participant* p = participantOf(agent);

@@ -79,6 +79,7 @@ class GameControl : public Node,
   void sense(const Event& event);
 
   void removeLeaving();
+  void release(AgentAspect& aspect);
   void joinBehaviors();
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);

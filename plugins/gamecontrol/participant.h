@@ -87,6 +87,8 @@ class Participant {
   bool leaving() const {
     return leaving_ || (number_ > 0 && !aspect()) || (inside_ ? !behavior() : !connection_ && !vacant_);
   }
+  /// True for an object of the scene, or a rule, whose mind was removed and nothing else.
+  bool lostMind() const { return inside_ && given_.isObject() && !behavior() && !excluded(); }
   /// The connection ended.
   void disconnect() { connection_ = nullptr; }
   /// True for a client of saved state whose robot stands there, and waits for a connection.

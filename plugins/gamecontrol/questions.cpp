@@ -4,12 +4,13 @@
 
 #include "gamecontrol/modifier_chain.h"
 #include "gamecontrol/script_event.h"
+#include "gamecontrol/script_perceptor.h"
 #include "spark/error.h"
 #include "spark/state.h"
 
 namespace spark::gamecontrol {
 
-List Questions::ask(Node& node, std::uint64_t round) {
+List Questions::ask(Node& node, std::uint64_t round, const std::function<bool(const Perceptor&)>& isSensed) {
   if (asking_) throw Error("a perceptor that is asked cannot ask others");
   std::vector<Perceptor*> perceptors;
   if (const auto self = node.as<Perceptor>()) perceptors.push_back(self);
@@ -36,7 +37,8 @@ List Questions::ask(Node& node, std::uint64_t round) {
     };
     try {
       const auto first = out.size();
-      if (const auto view = perceptor->as<ISharedView>()) view->share(round);
+      const bool keepsLast = perceptor->as<ScriptPerceptor>() && isSensed(*perceptor);
+      if (const auto view = perceptor->as<ISharedView>(); view && !keepsLast) view->share(round);
       if (perceptor) perceptor->sense(out, event);
       if (const auto modifiers = perceptor ? ModifierChain::of(*perceptor) : nullptr)
         modifiers->apply({Signal::Kind::percept, out, first}, event, now);

@@ -19,13 +19,15 @@ class ScriptPerceptor : public Perceptor, public ISharedView {
 
  protected:
   void onLink() override;
+  void saveState(StateWriter& out) const override { out.write(percept_); }
+  void loadState(StateReader& in) override { percept_ = in.readValue(); }
 
  private:
   void script(const std::string& file, const Value& arguments);
   void refuse(const std::string& why);
 
   Link<ISimulation> simulation_;
-  Value percept_;            ///< of this cycle; nil: none
+  Value percept_;            ///< what the script returned last; nil: none
   std::uint64_t round_ = 0;  ///< of the last share()
   bool isRefused_ = false;   ///< a percept that cannot be written has been logged
 };

@@ -117,6 +117,7 @@ TEST_CASE("An object whose mind is taken away is no agent, and keeps what it is 
   Node& ball = *s.node("/usr/scene/Ball").asNode();
   ball.kernel().registerClass<Pusher>();
   Node& aspect = ball.create<Node>("AgentAspect", "agent");
+  aspect.create("GPS", "gps");
   aspect.create("Pusher", "mind");
   s.run(3);
   const auto agents = [&] { return s.get("/sys/server/gamecontrol", "agentCount").toInteger(); };
@@ -124,8 +125,19 @@ TEST_CASE("An object whose mind is taken away is no agent, and keeps what it is 
   aspect.remove(*aspect.find("mind"));
   s.run(2);
   CHECK(agents() == 1);
-  CHECK(ball.find("agent") == nullptr);
+  CHECK(getProperty(aspect, "number").toInteger() == 0);
+  CHECK(aspect.find("gps") != nullptr);
   CHECK(ball.find("physics") != nullptr);
+  // Another mind may come.
+  auto& again = aspect.create<Pusher>("Pusher", "again");
+  s.run(10);
+  CHECK(agents() == 2);
+  CHECK(again.places > 4);
+  // An agent that is removed loses its aspect.
+  callMethod(s.node("/sys/server/gamecontrol"), "removeAgent", std::vector<Value>{getProperty(aspect, "number")});
+  s.run(2);
+  CHECK(agents() == 1);
+  CHECK(ball.find("agent") == nullptr);
 }
 
 TEST_CASE("A behavior that fails to start makes no agent, and the object keeps what it has") {
@@ -153,7 +165,7 @@ TEST_CASE("A behavior may remove itself while it thinks") {
   aspect.create("Quitter", "mind");
   s.run(10);
   CHECK(s.get("/sys/server/gamecontrol", "agentCount").toInteger() == 0);
-  CHECK(ball.find("agent") == nullptr);
+  CHECK(ball.find("agent") == &aspect);
 }
 
 TEST_CASE("An object without sensors thinks in every cycle, also where agents may ask for some") {

@@ -29,7 +29,8 @@ silent:new("ScriptBehavior", "mind"):on("think", function(self, event)
   for _, p in ipairs(event.data) do if p[1] == "time" then received.silent[#received.silent + 1] = p[2][2] end end
 end)
 local nested = true
-asks:new("ScriptPerceptor", "nosy"):on("perceive", function()
+local idle = new("Transform", "/usr/scene/idle"):new("AgentAspect", "agent") -- of no agent: its script runs when asked
+idle:new("ScriptPerceptor", "nosy"):on("perceive", function()
   nested = pcall(function() return asks:find("gps"):sense() end)
 end)
 on("rule", function(self, event)
@@ -41,6 +42,6 @@ on("rule", function(self, event)
   for i, t in ipairs(received.asks) do wrong = wrong or t ~= received.silent[i] end
   judge("what is sensed later is as without questions", not wrong)
   nested = true
-  asks:find("nosy"):sense()
+  idle:find("nosy"):sense()
   judge("a perceptor that is asked cannot ask", nested == false)
 end)
