@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <numeric>
 
 namespace spark::physics {
 
@@ -31,11 +32,13 @@ void BodyWatch::switched(Index body, bool awake) {
   anyRests_ |= !awake;
 }
 
-void BodyWatch::loaded(Index body, const Counters& counters, const Support& support) {
-  entries_[body].counters = counters;
-  entries_[body].support = support;
+void BodyWatch::loaded(Index body, const Counters& counters, const Support& support, const Start& start) {
+  Entry& w = entries_[body];
+  w.counters = counters;
+  w.support = support;
+  w.start = start;
   anyLoaded_ = anyRests_ = true;
-  loaded_.push_back({body, world_.state.bodies[body].awake, counters, support});
+  loaded_.push_back({body, world_.state.bodies[body].awake, counters, support, start});
 }
 
 void BodyWatch::settle() {
@@ -43,6 +46,7 @@ void BodyWatch::settle() {
     world_.state.bodies[l.body].awake = l.awake;
     entries_[l.body].counters = l.counters;
     entries_[l.body].support = l.support;
+    entries_[l.body].start = l.start;
   }
   loaded_.clear();
 }
@@ -123,9 +127,9 @@ void BodyWatch::putToSleep(const engine::Contacts& contacts, double dt, bool lat
   // In short steps gravity alone takes longer than ten of them to such a speed.
   const double leastIdle = world_.model.exactReplay ? 0 : 0.095;  // s
   constexpr double kLosing = 0.02;                                // s
-  bool any = false;
+  ready_.clear();
   for (Index i = 0; i < world_.state.bodies.size(); ++i) {
-    DynamicState& s = world_.state.bodies[i];
+    const DynamicState& s = world_.state.bodies[i];
     Entry& w = entries_[i];
     // A body without joints and contacts is in free flight: it does not fall asleep.
     if (!s.awake || (world_.model.bodies[i].joints == 0 && w.lastContact != calls_)) continue;
@@ -135,19 +139,24 @@ void BodyWatch::putToSleep(const engine::Contacts& contacts, double dt, bool lat
       continue;
     }
     // Idle: asleep when both counters have run out.
+    if (w.counters.idleStepsLeft == Counters().idleStepsLeft) w.start = {s.position, s.quaternion};
     --w.counters.idleStepsLeft;
     w.counters.idleTimeLeft -= dt;
     // What has just lost a contact may be about to fall.
     const std::uint32_t touching = w.lastContact == calls_ ? w.contacts : 0;
     if (!world_.model.exactReplay && std::exchange(w.support.contacts, touching) > touching)
       w.counters.idleTimeLeft = std::max(w.counters.idleTimeLeft, kLosing - leastIdle);
-    if (w.counters.idleStepsLeft > 0 || w.counters.idleTimeLeft > -leastIdle) continue;
+    if (w.counters.idleStepsLeft <= 0 && w.counters.idleTimeLeft <= -leastIdle) ready_.push_back(i);
+  }
+  if (!ready_.empty() && !world_.model.exactReplay) keepDriven(contacts);
+  for (const Index i : ready_) {
+    DynamicState& s = world_.state.bodies[i];
     s.awake = false;
     s.linearVelocity.setZero();
     s.angularVelocity.setZero();
     ++s.version;
-    any = true;
   }
+  const bool any = !ready_.empty();
   anyRests_ |= any;
   if (!any || late || world_.model.exactReplay) return;
   // Those that fell asleep now rest on these contacts.
@@ -158,6 +167,79 @@ void BodyWatch::putToSleep(const engine::Contacts& contacts, double dt, bool lat
       Entry& w = entries_[i];
       w.support = {std::exchange(w.touching, 0), w.support.contacts, true, false};
     }
+}
+
+namespace {
+
+/// True if a joint may move its bodies however slow they are. Damping and springs are only a reason to look twice: they
+/// hold what is at rest, too.
+bool drives(const engine::Joint& joint, const engine::Motors& motors) {
+  for (std::size_t axis = 0; axis < joint.axes.size(); ++axis) {
+    const engine::JointAxis& a = joint.axes[axis];
+    const engine::Motor& m = motors[axis];
+    if (a.damping > 0 || a.stiffness > 0 || (m.velocity != 0 && m.maxForce > 0)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void BodyWatch::findDriven() {
+  for (Index i = 0; i < entries_.size(); ++i) {
+    const engine::Body& b = world_.model.bodies[i];
+    entries_[i].driven = b.linearDamping > 0 || b.angularDamping > 0;
+  }
+  const auto drive = [this](Index a, Index b) {
+    if (a != kNone) entries_[a].driven = true;
+    if (b != kNone) entries_[b].driven = true;
+  };
+  const std::vector<engine::Joint>& joints = world_.model.joints;
+  for (Index j = 0; j < joints.size(); ++j)
+    if (drives(joints[j], world_.state.motors[j])) drive(joints[j].a, joints[j].b);
+  for (const engine::AxisControl& c : world_.state.controls) drive(joints[c.joint].a, joints[c.joint].b);
+}
+
+bool BodyWatch::isStill(Index body) const {
+  constexpr double kStillSpeed = 1e-5;  // m/s and rad/s, on average since it became idle
+  const DynamicState& s = world_.state.bodies[body];
+  const Entry& w = entries_[body];
+  const double most = kStillSpeed * -w.counters.idleTimeLeft;
+  // The vector of a small rotation is half its angle.
+  const Quaternion turn = timesConjugate(s.quaternion, w.start.quaternion);
+  const Vec3 half(turn[1], turn[2], turn[3]), moved = s.position - w.start.position;
+  return dot(moved, moved) <= most * most && 4 * dot(half, half) <= most * most;
+}
+
+void BodyWatch::keepDriven(const engine::Contacts& contacts) {
+  findDriven();
+  std::vector<DynamicState>& bodies = world_.state.bodies;
+  bool any = false;
+  auto ready = ready_.begin();
+  for (Index i = 0; i < bodies.size(); ++i) {
+    Entry& w = entries_[i];
+    const bool isReady = ready != ready_.end() && *ready == i;
+    if (isReady) ++ready;
+    if (!w.driven) continue;
+    w.driven = bodies[i].awake && !(isReady && isStill(i));  // and moves
+    if (w.driven && isReady) w.counters = {};
+    any |= w.driven;
+  }
+  if (!any) return;
+  root_.resize(bodies.size());
+  std::iota(root_.begin(), root_.end(), Index{0});
+  const auto find = [this](Index i) {
+    while (root_[i] != i) i = root_[i] = root_[root_[i]];
+    return i;
+  };
+  const auto unite = [&](Index a, Index b) {
+    if (a != kNone && b != kNone) root_[find(a)] = find(b);
+  };
+  for (const engine::Joint& j : world_.model.joints) unite(j.a, j.b);
+  for (const engine::Contact& c : contacts)
+    if (c.solve) unite(c.bodyA, c.bodyB);
+  for (Index i = 0; i < bodies.size(); ++i)
+    if (entries_[i].driven) entries_[find(i)].driven = true;
+  std::erase_if(ready_, [&](Index i) { return entries_[find(i)].driven; });
 }
 
 void BodyWatch::repair(std::vector<Index>& repaired) {

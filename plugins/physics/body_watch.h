@@ -10,6 +10,11 @@
 ///     all else            joints, motors, masses, gravity: WorldModel wakes the bodies when one is set to another
 ///     value.
 ///
+/// What is driven may creep: a motor of 0.3 deg/s is slower than any threshold of idleness, and moves all the same. A
+/// body with a motor that turns, a controller, spring or damping sleeps only if it is where it was when it became idle.
+/// What joints and contacts connect with one that moves stays awake with it: put to rest in each step, it would be a
+/// brake.
+///
 /// Solvers wake what is connected with a body that is awake, so a pile wakes as a whole. With exactReplay nothing of
 /// this holds, as in the installed base: a body sleeps until it is pushed, or touched by one that is awake.
 
@@ -25,7 +30,12 @@ class BodyWatch {
   /// `world` must outlive it.
   explicit BodyWatch(WorldData& world) : world_(world) {}
   /// A body was added at the end.
-  void add() { entries_.emplace_back(); }
+  void add() {
+    entries_.emplace_back();
+    // A step must not allocate.
+    ready_.reserve(entries_.capacity());
+    root_.reserve(entries_.capacity());
+  }
   /// Bodies were removed: see physics::renumber().
   void renumber(const std::vector<engine::Index>& now) {
     physics::renumber(entries_, now);
@@ -67,8 +77,18 @@ class BodyWatch {
     BodyWatch& watch_;
   };
   bool loading() const { return loadings_ > 0; }
+  /// Where a body was when it became idle.
+  struct Start {
+    Vec3 position = Vec3::Zero();
+    Quaternion quaternion{1, 0, 0, 0};
+  };
+  const Start& start(engine::Index body) const { return entries_[body].start; }
+  /// It is awake and has been idle for a step at least.
+  bool idles(engine::Index body) const {
+    return world_.state.bodies[body].awake && counters(body).idleStepsLeft < Counters().idleStepsLeft;
+  }
   /// The state of the body was loaded, with these. What it depends on may be loaded later: see settle().
-  void loaded(engine::Index body, const Counters& counters, const Support& support);
+  void loaded(engine::Index body, const Counters& counters, const Support& support, const Start& start);
   /// All is loaded: what was loaded holds, whatever woke bodies since.
   void settle();
   /// True once after loaded(): contacts of an earlier step are not those of now.
@@ -88,6 +108,8 @@ class BodyWatch {
   struct Entry {
     Counters counters;
     Support support;
+    Start start;
+    bool driven = false;                ///< see findDriven()
     std::uint64_t lastContact = 0;      ///< number of the last call of putToSleep() with a solved contact
     std::uint32_t contacts = 0;         ///< their number in that call
     std::uint64_t touching = 0;         ///< sum of addDigests(); 0 otherwise
@@ -97,15 +119,24 @@ class BodyWatch {
   /// Adds the digest of each solved contact to `touching` of those of its bodies that `counts` is true for.
   template <class Counts>
   void addDigests(const engine::Contacts& contacts, Counts&& counts);
+  /// Sets Entry::driven.
+  void findDriven();
+  /// True if a body that is ready to sleep has not moved since it became idle.
+  bool isStill(engine::Index body) const;
+  /// Removes from ready_ what is driven and moves, and all that is connected with it.
+  void keepDriven(const engine::Contacts& contacts);
   WorldData& world_;
   std::vector<Entry> entries_;
-  std::uint64_t calls_ = 0;  ///< of putToSleep()
-  bool anyRests_ = false;    ///< a body may sleep, or have slept at the last call of wake()
+  std::vector<engine::Index> ready_;  ///< bodies that have been idle long enough, in rising order
+  std::vector<engine::Index> root_;   ///< by body: disjoint sets of what joints and contacts connect
+  std::uint64_t calls_ = 0;           ///< of putToSleep()
+  bool anyRests_ = false;             ///< a body may sleep, or have slept at the last call of wake()
   struct Loaded {
     engine::Index body;
     bool awake;
     Counters counters;
     Support support;
+    Start start;
   };
   std::vector<Loaded> loaded_;  ///< until settle() or the next step
   bool anyLoaded_ = false;      ///< see takeLoaded()

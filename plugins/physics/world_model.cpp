@@ -287,7 +287,7 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
   ++data_.poses;
   s.awake = *p++ != 0;
   if (const bool gravity = *p++ != 0; gravity != model_.bodies[i].gravity) setGravityMode(body, gravity);
-  watch_.loaded(i, {static_cast<int>(p[0]), p[1]}, {});
+  watch_.loaded(i, {static_cast<int>(p[0]), p[1]}, {}, {s.position, s.quaternion});
   s.rotation = rotationOf(s.quaternion);
   if (!derived) std::copy_n(p + 2, kSavedRotation, s.rotation.data());
   watch_.placed(i);
@@ -296,10 +296,16 @@ void WorldModel::loadBody(BodyHandle body, std::span<const double> in) {
 
 std::string WorldModel::saveSupport(BodyHandle body) const {
   const BodyWatch::Support& s = watch_.support(bodies_[body]);
-  if (!s.known && s.contacts == 0) return {};
+  const bool idles = watch_.idles(bodies_[body]);
+  if (!s.known && s.contacts == 0 && !idles) return {};
   StateWriter out(true);
   out.write(s.digest);
   out.write(std::uint64_t{s.contacts} << 2 | std::uint64_t{s.slept} << 1 | std::uint64_t{s.known});
+  if (idles) {
+    const BodyWatch::Start& start = watch_.start(bodies_[body]);
+    for (const double v : start.position) out.write(v);
+    for (const double v : start.quaternion) out.write(v);
+  }
   return out.take();
 }
 
@@ -309,8 +315,13 @@ void WorldModel::loadSupport(BodyHandle body, std::string_view bytes) {
   const auto digest = static_cast<std::uint64_t>(in.readInteger());
   const auto rest = static_cast<std::uint64_t>(in.readInteger());
   const Index i = bodies_[body];
+  BodyWatch::Start start = watch_.start(i);
+  if (!in.atEnd()) {
+    for (double& v : start.position) v = in.readNumber();
+    for (double& v : start.quaternion) v = in.readNumber();
+  }
   watch_.loaded(i, BodyWatch::Counters(watch_.counters(i)),
-                {digest, static_cast<std::uint32_t>(rest >> 2), (rest & 1) != 0, (rest & 2) != 0});
+                {digest, static_cast<std::uint32_t>(rest >> 2), (rest & 1) != 0, (rest & 2) != 0}, start);
 }
 
 // ---- geoms ----
