@@ -156,6 +156,7 @@ void Joint::attach(std::string first, std::string second) {
   if (!world()) return;
   bodies_[0] = bodyAt(first);
   bodies_[1] = bodyAt(second);
+  placeBodies();
   const auto handle = [](const Ref<RigidBody>& b) { return b ? b->handle() : physics::BodyHandle::none; };
   try {
     world()->attach(joint_, handle(bodies_[0]), handle(bodies_[1]));
@@ -168,6 +169,11 @@ void Joint::attach(std::string first, std::string second) {
   attached_ = true;
   attached();
   for (const auto& set : std::exchange(pending_, {})) set();
+}
+
+void Joint::placeBodies() const {
+  for (const Ref<RigidBody>& body : bodies_)
+    if (body) body->catchUp();
 }
 
 void Joint::setAnchor(const Vec3& local) {

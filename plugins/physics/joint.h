@@ -68,7 +68,7 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended, pub
   void withBodies(F f) {
     if (!world()) return;
     if (attached_)
-      f();
+      placeBodies(), f();
     else
       pending_.push_back(std::move(f));
   }
@@ -127,6 +127,8 @@ class Joint : public PhysicsObject, public IJoint, public engine::IExtended, pub
   void attach(std::string first, std::string second);
   /// The body at a path relative to the joint; empty, with a warning, when there is none.
   Ref<RigidBody> bodyAt(const std::string& path);
+  /// Brings its bodies to where their transforms are: the joint is set in the world, at the places that they have then.
+  void placeBodies() const;
   void enableFeedback(bool on);
   double maxSpeed1() const { return maxSpeed_[0]; }
   double maxSpeed2() const { return maxSpeed_[1]; }

@@ -221,9 +221,27 @@ void RigidBody::useGravity(bool on) {
   if (world_) world_->setGravityMode(body_, on);
 }
 
+namespace {
+/// True if a transform, or one above it, was moved by hand since the last place phase.
+bool isMovedByHand(const Transform* transform) {
+  for (; transform; transform = transform->transform())
+    if (transform->movedSincePlace()) return true;
+  return false;
+}
+}  // namespace
+
 void RigidBody::follow(const Matrix& world) {
   // The transform still has the origin before the pending shift.
   setPose(compose(toPose(world), {-pendingShift_, Mat3::Identity()}));
+}
+
+void RigidBody::catchUp() {
+  if (!world_ || !isMovedByHand(transform())) return;
+  // Where it is there already, but for the transform's single precision, its digits stay.
+  const Pose due = compose(physics::frameOf(*this), {-pendingShift_, Mat3::Identity()});
+  const engine::BodyState now = world_->state(body_);
+  const double rounding = 1e-6 * (1 + due.position.norm());
+  if ((due.position - now.position).norm() > rounding || !due.rotation.isApprox(now.rotation, 1e-6)) setPose(due);
 }
 
 void RigidBody::applyMass(const engine::Mass& mass) {

@@ -41,6 +41,9 @@ class RigidBody : public Body, public IRigidBody, public IPlacedBody, public IFo
   void enable() override;
   Transform* bodyTransform() const override { return transform(); }
   void follow(const Matrix& world) override;
+  /// Follows a transform that was moved by hand now, not before the next step: for what is set relative to the body's
+  /// place.
+  void catchUp();
   const Jumps& jumps() const override { return jumps_; }
   Vec3 worldGravity() const override;
   bool exactReplay() const override { return world_ && world_->model().exactReplay; }
