@@ -3,7 +3,7 @@
 
 #include "mujoco_world.h"
 
-// What acts on a world in MuJoCo: motors, controllers, and forces on bodies with drag and damping.
+// What acts on a world in MuJoCo: motors, and forces on bodies with drag and damping.
 //
 // Motors: MuJoCo solves dry friction of a joint as a constraint whose force is bounded, and which demands an
 // acceleration that brings the velocity to 0. With the motor's speed as reference in place of 0, and its force as the
@@ -50,15 +50,20 @@ bool MujocoWorld::isFree(int body) const {
   return m_->body_jntnum[body] > 0 && m_->jnt_type[m_->body_jntadr[body]] == mjJNT_FREE;
 }
 
-/// That of a free body comes with its joint.
+/// That of a free body comes with its joint. Where it is strong for the step it is weakened to what a free body would
+/// feel if it were implicit, which joints only make heavier.
 void MujocoWorld::addBodyDamping(const Model& model, Index body, Vec3& force, Vec3& torque) const {
   const engine::Body& b = model.bodies[body];
   const int id = bodyId_[body];
   if ((b.linearDamping == 0 && b.angularDamping == 0) || isFree(id)) return;
-  const Vec3 origin = toVec(d_->xpos + 3 * id);
-  const Vec3 drag = -b.linearDamping * velocityOf(id, origin);
+  const Vec3 arm = toVec(d_->xpos + 3 * id) - centreOf(id);
+  const double least = 1 / b.inverseInertia.trace();  // at most the least moment of inertia
+  const double strength =
+      m_->opt.timestep * std::max(b.linearDamping * (1 / b.mass + arm.squaredNorm() / least), b.angularDamping / least);
+  const double share = 1 / std::max(1.0, strength);
+  const Vec3 drag = -share * b.linearDamping * velocityOf(id, toVec(d_->xpos + 3 * id));
   force += drag;
-  torque += (origin - centreOf(id)).cross(drag) - b.angularDamping * toVec(d_->cvel + 6 * id);
+  torque += arm.cross(drag) - share * b.angularDamping * toVec(d_->cvel + 6 * id);
 }
 
 /// Forces on bodies as forces along the degrees of freedom. MuJoCo 2.2.2 would do so with a Jacobian of the whole world
@@ -93,56 +98,6 @@ void MujocoWorld::applyForces(const Model& model, const State& state) {
       d_->qfrc_applied[dof] += toVec(d_->cdof + 6 * dof).dot(own.torque) + toVec(d_->cdof + 6 * dof + 3).dot(own.force);
     Wrench& parent = wrenches_[static_cast<std::size_t>(m_->body_parentid[body])];
     parent += own;
-  }
-}
-
-void MujocoWorld::passControls(const State& state) {
-  for (const int actuator : actuators_)
-    if (actuator >= 0) mju_zero(m_->actuator_biasprm + mjNBIAS * actuator, 3);
-  for (const engine::AxisControl& c : state.controls) {
-    const auto [joint, sign] = coordinates_[c.joint][c.axis];
-    if (joint < 0) continue;
-    const int actuator = actuators_[static_cast<std::size_t>(joint)];
-    const engine::Control& own = c.control;
-    mjtNum* bias = m_->actuator_biasprm + mjNBIAS * actuator;
-    bias[0] = sign * (own.stiffness * own.position + own.damping * own.velocity + own.force);
-    bias[1] = -own.stiffness;
-    bias[2] = -own.damping;
-    m_->actuator_forcelimited[actuator] = std::isfinite(own.maxForce);
-    m_->actuator_forcerange[2 * actuator] = -own.maxForce;
-    m_->actuator_forcerange[2 * actuator + 1] = own.maxForce;
-    if (own.termCount == 0) continue;
-    // Each term has a range of its own: the actuator has their sum without ranges, whose damping is implicit, and what
-    // the ranges take away acts beside it.
-    engine::Control whole = own;
-    whole.maxForce = HUGE_VAL;
-    m_->actuator_forcelimited[actuator] = 0;
-    for (int k = 0; k < own.termCount; ++k) {
-      engine::ControlTerm& term = whole.terms[static_cast<std::size_t>(k)];
-      term.least = -HUGE_VAL, term.most = HUGE_VAL;
-      bias[0] += sign * term.force;
-      bias[1] -= term.stiffness;
-      bias[2] -= term.damping;
-    }
-    const int dof = m_->jnt_dofadr[joint];
-    const double angle = sign * d_->qpos[m_->jnt_qposadr[joint]], rate = sign * d_->qvel[dof];
-    d_->qfrc_applied[dof] += sign * (own.at(angle, rate) - whole.at(angle, rate));
-  }
-}
-
-void MujocoWorld::passInputs(const State& state) {
-  for (const auto& [kind, actuator] : inputs_)
-    for (const engine::BlockInput& input : state.inputs)
-      if (input.kind == kind) d_->ctrl[actuator] = input.value;
-}
-
-void MujocoWorld::applyControls(const State& state) {
-  if (!actuators_.empty()) return passControls(state);
-  for (const engine::AxisControl& c : state.controls) {
-    const auto [joint, sign] = coordinates_[c.joint][c.axis];
-    if (joint < 0) continue;
-    const int dof = m_->jnt_dofadr[joint];
-    d_->qfrc_applied[dof] += sign * c.control.at(sign * d_->qpos[m_->jnt_qposadr[joint]], sign * d_->qvel[dof]);
   }
 }
 

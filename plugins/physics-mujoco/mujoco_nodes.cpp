@@ -110,6 +110,8 @@ void MujocoOptions::describe(Description<MujocoOptions>& d) {
   d.property("multiccd", &O::is<&N::multiccd>, &O::setIs<&N::multiccd>).doc("Convex shapes touch in several points.");
   d.property("allContacts", &O::is<&N::allContacts>, &O::setIs<&N::allContacts>)
       .doc("Contacts beyond contactsPerPair are solved, too, as in MuJoCo alone; they are not reported.");
+  d.property("explicitLaws", &O::is<&N::explicitLaws>, &O::setIs<&N::explicitLaws>)
+      .doc("Controllers and springs are explicit, as in MuJoCo alone, while a step of those is stable.");
   d.property("overrides", &O::is<&N::overrides>, &O::setIs<&N::overrides>)
       .doc("All contacts have the three numbers below in place of their own.");
   d.property("overrideMargin", &O::get<&N::overrideMargin>, &O::set<&N::overrideMargin>)

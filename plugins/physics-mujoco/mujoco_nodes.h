@@ -55,6 +55,7 @@ struct OptionNumbers {
   double mprTolerance = 1e-6;                         ///< at which it stops
   std::int64_t refsafe = 1;                           ///< time constants are at least two steps
   std::int64_t multiccd = 0;                          ///< convex shapes touch in several points
+  std::int64_t explicitLaws = 0;                      ///< see mujoco_laws.cpp
   std::int64_t allContacts = 0;                       ///< those beyond the most of a pair are solved, too
   std::int64_t overrides = 0;                         ///< all contacts have these numbers:
   double overrideMargin = 0;                          ///< m

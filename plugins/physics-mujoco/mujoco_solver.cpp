@@ -143,6 +143,15 @@ void MujocoSolver::reportSkipped(const Constraints& constraints) {
           pathOfConstraint(engine_.kernel().root(), number));
 }
 
+void MujocoSolver::reportStiff(const engine::Model& model) {
+  if (saidStiff_ || world_->stiffJoint() == engine::kNone) return;
+  saidStiff_ = true;
+  engine_.kernel().log().warning(
+      "{}: its spring or controller is too stiff for MuJoCo's own step of {} s, in which it would run away: it acts "
+      "implicitly, and so do others",
+      pathOf<IJoint>(engine_.kernel().root(), model.joints[world_->stiffJoint()].id), step_);
+}
+
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
   // The system takes back the memory of a large world in milliseconds: in another thread.
   auto world = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
@@ -232,6 +241,7 @@ void MujocoSolver::step(engine::Step& step) {
     return refuse(e.what());
   }
   if (const std::string message = world_->takeMessage(); !message.empty()) engine_.report(message);
+  reportStiff(step.model);
   takePending(step.model);
   if (!world_ || full_ || !world_->isFull()) return;
   const Sizes old = sizes_;

@@ -52,12 +52,14 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   void refuse(const std::string& why, const engine::Model* model = nullptr);
   /// Logs the constraints that are left out and were not before.
   void reportSkipped(const Constraints& constraints);
+  /// Logs the first joint whose law MuJoCo alone could not step.
+  void reportStiff(const engine::Model& model);
 
   LibraryGuard library_;
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   MeshPieces pieces_;
-  bool saidFlat_ = false, saidHull_ = false;
+  bool saidFlat_ = false, saidHull_ = false, saidStiff_ = false;
   Sizes sizes_;
   double step_ = 0.005;       ///< s
   std::vector<int> skipped_;  ///< constraints that the last model leaves out

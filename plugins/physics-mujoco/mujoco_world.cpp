@@ -137,6 +137,8 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
   }
 
   wrenches_.resize(static_cast<std::size_t>(m_->nbody));
+  resistances_.resize(static_cast<std::size_t>(m_->nv));
+  mobilities_.resize(static_cast<std::size_t>(m_->nv));
   for (int body = 0; body < m_->nbody; ++body) {
     const Vec3 i = toVec(m_->body_inertia + 3 * body);
     const double mass = std::max(m_->body_mass[body], mjMINVAL);
@@ -415,7 +417,7 @@ void MujocoWorld::act() {
   releaseUnsolved();
   passSpeeds(*state_);
   applyForces(*model_, *state_);
-  applyControls(*state_);
+  applyLaws(*state_);
 }
 
 void MujocoWorld::onStage(void* world) {

@@ -59,6 +59,8 @@ class MujocoWorld {
   void takeActivations(const MujocoWorld& before);
   /// True when MuJoCo had too little room for contacts or constraints: it dropped some, and wants larger sizes.
   bool isFull() const;
+  /// The first joint that has a law which MuJoCo alone could not step; kNone: there is none. See mujoco_laws.cpp.
+  Index stiffJoint() const { return stiffJoint_; }
   /// MuJoCo's last warning since the last call; "": none.
   std::string takeMessage() { return std::exchange(message_, {}); }
 
@@ -101,9 +103,16 @@ class MujocoWorld {
   Vec3 armOf(int body, const Vec3& point) const;
   Vec3 velocityOf(int body, const Vec3& point) const;
   void passSpeeds(const engine::State& state);
-  void applyControls(const engine::State& state);
-  /// Writes the controllers' numbers to the actuators.
-  void passControls(const engine::State& state);
+  /// Controllers, and the springs of joints, implicit where they are stiff.
+  void applyLaws(const engine::State& state);
+  void applyControl(const engine::AxisControl& control);
+  /// Writes a controller's numbers to its actuator.
+  void passControl(const engine::Control& control, int joint, double sign);
+  void applySprings();
+  /// Adds what makes laws implicit to MuJoCo's inertias.
+  void addInertias();
+  /// Acceleration of a coordinate per force along it, with all others free.
+  double mobilityOf(int dof);
   /// The controls of actuators.
   void passInputs(const engine::State& state);
   /// All that acts in one stage of a step.
@@ -169,6 +178,10 @@ class MujocoWorld {
   std::vector<std::pair<std::uint64_t, int>> pairs_;    ///< of findSpare(): pair of geoms, contact
   std::vector<double> apart_;     ///< of thinOut(): squared distance from the chosen ones; -1: is one
   std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
+  // Of applyLaws(), by degree of freedom: the force per velocity after the step, and what mobilityOf() works with.
+  std::vector<double> resistances_, mobilities_;
+  bool resists_ = false;  ///< any of them does
+  Index stiffJoint_ = kNone;
   // By MuJoCo's body, as compiled: what the model has now may be later.
   std::vector<Vec3> linkOrigins_;       ///< see Body::linkOrigin
   std::vector<std::uint8_t> hasParts_;  ///< it is the first of several parts

@@ -139,8 +139,10 @@ void Builder::setOptions(Node& root) {
     // As in MuJoCo alone.
     if (scenes) scenes->willChange(*node);
     setWritten(*node, "");
-    before.push_back({node, "allContacts", getProperty(*node, "allContacts")});
-    setProperty(*node, "allContacts", true);
+    for (const char* const property : {"allContacts", "explicitLaws"}) {
+      before.push_back({node, property, getProperty(*node, property)});
+      setProperty(*node, property, true);
+    }
   }
   for (const Option& o : model_.options) {
     Leaf* const node = o.ofMujoco ? extensionOf(*world, "MujocoOptions") : world;
