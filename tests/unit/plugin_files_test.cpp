@@ -107,6 +107,55 @@ TEST_CASE("A file with a segment outside of the loaded memory is refused") {
   CHECK(host.kernel.plugins().scan(folder.path()).size() == moved);
 }
 
+#ifdef __x86_64__
+TEST_CASE("A file whose relocations or versions are damaged is refused, and the linker never reads them") {
+  const std::string whole = bytesOf(good("fixture-base"));
+  const auto at = [&whole]<class T>(T, std::size_t offset) {
+    T out;
+    REQUIRE(offset + sizeof out <= whole.size());
+    std::memcpy(&out, whole.data() + offset, sizeof out);
+    return out;
+  };
+  const test::TemporaryFolder folder;
+  std::size_t written = 0;
+  const auto write = [&](std::size_t offset, const auto& damaged) {
+    std::string bytes = whole;
+    std::memcpy(bytes.data() + offset, &damaged, sizeof damaged);
+    overwrite(folder.path() / (std::to_string(written++) + ".so"), bytes);
+  };
+  const auto head = at(Elf64_Ehdr(), 0);
+  for (std::size_t i = 0; i < head.e_shnum; ++i) {
+    const auto section = at(Elf64_Shdr(), head.e_shoff + i * sizeof(Elf64_Shdr));
+    if (section.sh_type == SHT_RELA) {
+      const auto last = section.sh_offset + section.sh_size - sizeof(Elf64_Rela);  // it has a symbol
+      auto r = at(Elf64_Rela(), last);
+      r.r_offset ^= std::uint64_t{1} << 40;
+      write(last, r);
+      r = at(Elf64_Rela(), last);
+      r.r_info ^= std::uint64_t{1} << 60;
+      write(last, r);
+      r = at(Elf64_Rela(), last);
+      r.r_info ^= 0x80;
+      write(last, r);
+    } else if (section.sh_type == SHT_GNU_verneed) {
+      auto library = at(Elf64_Verneed(), section.sh_offset);
+      library.vn_file ^= 0x100;
+      write(section.sh_offset, library);
+      library = at(Elf64_Verneed(), section.sh_offset);
+      library.vn_aux = 1 << 30;
+      write(section.sh_offset, library);
+    } else if (section.sh_type == SHT_GNU_versym) {
+      write(section.sh_offset + sizeof(Elf64_Half), Elf64_Half{0x7f00});  // of the first symbol
+    }
+  }
+  REQUIRE(written == 9);
+  TestHost host(false);
+  const auto problems = host.kernel.plugins().scan(folder.path());
+  for (const std::string& problem : problems) CHECK_THAT(problem, Catch::Contains("its headers are damaged"));
+  CHECK(problems.size() == written);
+}
+#endif
+
 TEST_CASE("Overwriting the file of a running plugin does no harm, and loading it again gives the new version") {
   const test::TemporaryFolder folder;
   const fs::path file = folder.path() / "fixture-base.so";

@@ -13,8 +13,9 @@
 #include "open_file.h"
 
 // Checks what the dynamic linker asserts or uses unchecked: the header tables are inside the file, segments are in
-// order and aligned, and the dynamic section and the tables it refers to are inside loaded segments. ELF
-// specification 1.2; System V gABI, chapters 4 and 5.
+// order and aligned, and the dynamic section and the tables it refers to are inside loaded segments; relocations, the
+// symbols that they use and needed versions refer to what exists. ELF specification 1.2; System V gABI, chapters 4 and
+// 5; its AMD64 supplement, chapter 4.4.1; Drepper, How to write shared libraries, appendix A (versions).
 
 namespace spark {
 
@@ -41,6 +42,28 @@ bool isOutsideLoaded(const Elf64_Phdr& p, const std::vector<Elf64_Phdr>& segment
   });
 }
 
+/// The contents of the loaded segments.
+class Contents {
+ public:
+  Contents(int file, const std::vector<Elf64_Phdr>& segments) : file_(file), segments_(segments) {}
+
+  /// Reads `count` objects at an address. Returns false unless one segment of the file contains all of them.
+  template <class T>
+  bool read(std::uint64_t address, std::uint64_t count, std::vector<T>& to) const {
+    for (const Elf64_Phdr& p : segments_) {
+      if (p.p_type != PT_LOAD || count > p.p_filesz || !within(address, count * sizeof(T), p.p_vaddr, p.p_filesz))
+        continue;
+      to.resize(count);
+      return readAt(file_, p.p_offset + (address - p.p_vaddr), to.data(), count);
+    }
+    return false;
+  }
+
+ private:
+  int file_;
+  const std::vector<Elf64_Phdr>& segments_;
+};
+
 /// A table that the dynamic section refers to: the tags of the entries with its address and its size. DT_NULL: no entry
 /// has the size.
 struct Table {
@@ -64,11 +87,12 @@ constexpr Table kTables[] = {{DT_STRTAB, DT_STRSZ},
 /// The entries of a library's dynamic section.
 class DynamicSection {
  public:
-  DynamicSection(const std::vector<Elf64_Dyn>& entries, const std::vector<Elf64_Phdr>& segments)
-      : entries_(entries), segments_(segments) {}
+  DynamicSection(const std::vector<Elf64_Dyn>& entries, const std::vector<Elf64_Phdr>& segments, int file)
+      : entries_(entries), segments_(segments), contents_(file, segments) {}
 
-  bool isDamaged() const {
-    return !isTerminated() || !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit();
+  bool isDamaged() {
+    return !isTerminated() || !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit() || !versionsFit() ||
+           !relocationsFit();
   }
 
  private:
@@ -110,14 +134,17 @@ class DynamicSection {
       return !has(t.address) || isLoaded(value(t.address), size ? size->d_un.d_val : 0);
     });
   }
-  bool isLoaded(std::uint64_t address, std::uint64_t size) const {
+  /// `flags`: those that the segment must have.
+  bool isLoaded(std::uint64_t address, std::uint64_t size, Elf64_Word flags = 0) const {
     return std::any_of(segments_.begin(), segments_.end(), [&](const Elf64_Phdr& p) {
-      return p.p_type == PT_LOAD && within(address, std::max<std::uint64_t>(size, 1), p.p_vaddr, p.p_memsz);
+      return p.p_type == PT_LOAD && (p.p_flags & flags) == flags &&
+             within(address, std::max<std::uint64_t>(size, 1), p.p_vaddr, p.p_memsz);
     });
   }
-  /// True if every name begins inside the string table.
-  bool namesFit() const {
+  /// True if every name is inside the string table.
+  bool namesFit() {
     const std::uint64_t size = value(DT_STRSZ);
+    if (!contents_.read(value(DT_STRTAB), size, names_) || names_.empty() || names_.back() != 0) return false;
     for (const Elf64_Dyn& d : entries_) {
       if (d.d_tag == DT_NULL) break;
       const bool isName = d.d_tag == DT_NEEDED || d.d_tag == DT_SONAME || d.d_tag == DT_RPATH || d.d_tag == DT_RUNPATH;
@@ -125,9 +152,88 @@ class DynamicSection {
     }
     return true;
   }
+  /// True if a library of the name at that offset is needed.
+  bool isNeeded(std::uint64_t name) const {
+    return name < names_.size() && std::any_of(entries_.begin(), entries_.end(), [&](const Elf64_Dyn& d) {
+             return d.d_tag == DT_NEEDED && std::strcmp(&names_[d.d_un.d_val], &names_[name]) == 0;
+           });
+  }
+  /// True if needed versions are those of needed libraries and have names. Notes the highest number of a version.
+  bool versionsFit() {
+    std::vector<Elf64_Verneed> library;
+    std::vector<Elf64_Vernaux> version;
+    std::uint64_t at = has(DT_VERNEED) ? value(DT_VERNEED) : 0;
+    for (std::uint64_t next = at; next != 0 && at != 0; at += next) {
+      if (!contents_.read(at, 1, library) || library[0].vn_version != VER_NEED_CURRENT || !isNeeded(library[0].vn_file))
+        return false;
+      std::uint64_t inner = at + library[0].vn_aux;
+      for (int i = 0; i < library[0].vn_cnt; ++i, inner += version[0].vna_next) {
+        if (!contents_.read(inner, 1, version) || version[0].vna_name >= names_.size()) return false;
+        if ((version[0].vna_next == 0) != (i + 1 == library[0].vn_cnt)) return false;
+        lastVersion_ = std::max<unsigned>(lastVersion_, version[0].vna_other & kVersionMask);
+      }
+      next = library[0].vn_next;
+    }
+    return true;
+  }
+  /// True if a symbol that a relocation uses has a name and a version, and is code if the linker calls it.
+  bool symbolFits(std::uint64_t index) {
+    std::vector<Elf64_Sym> symbol;
+    if (!contents_.read(value(DT_SYMTAB) + index * sizeof(Elf64_Sym), 1, symbol) || symbol[0].st_name >= names_.size())
+      return false;
+    if (symbol[0].st_shndx != SHN_UNDEF && ELF64_ST_TYPE(symbol[0].st_info) == STT_GNU_IFUNC &&
+        !isLoaded(symbol[0].st_value, 0, PF_X))
+      return false;
+    std::vector<Elf64_Half> version;
+    if (!has(DT_VERSYM) || has(DT_VERDEF)) return true;  // versions of its own are not counted
+    return contents_.read(value(DT_VERSYM) + index * sizeof(Elf64_Half), 1, version) &&
+           (version[0] & kVersionMask) <= lastVersion_;
+  }
+  bool relocationsFit() { return relocationsFit(DT_RELA, DT_RELASZ) && relocationsFit(DT_JMPREL, DT_PLTRELSZ); }
+  /// True if the relocations of a table change writable memory by what exists. What they point to is not followed,
+  /// unless it is called.
+  bool relocationsFit(Elf64_Sxword table, Elf64_Sxword size) {
+    std::vector<Elf64_Rela> relocations;
+    if (!has(table)) return true;
+    return contents_.read(value(table), value(size) / sizeof(Elf64_Rela), relocations) &&
+           std::all_of(relocations.begin(), relocations.end(), [&](const Elf64_Rela& r) { return relocationFits(r); });
+  }
+  bool relocationFits(const Elf64_Rela& r) {
+#ifdef __x86_64__
+    if (!isLoaded(r.r_offset, sizeof(Elf64_Addr), has(DT_TEXTREL) ? 0 : PF_W)) return false;
+    const auto target = static_cast<std::uint64_t>(r.r_addend);
+    const auto isIn = [&](Elf64_Sxword begin, Elf64_Sxword size) {
+      return has(begin) && has(size) && within(r.r_offset, 0, value(begin), value(size)) &&
+             r.r_offset != value(begin) + value(size);
+    };
+    const bool isCalled = isIn(DT_INIT_ARRAY, DT_INIT_ARRAYSZ) || isIn(DT_FINI_ARRAY, DT_FINI_ARRAYSZ);
+    switch (ELF64_R_TYPE(r.r_info)) {
+      case R_X86_64_RELATIVE:
+        return !isCalled || isLoaded(target, 0, PF_X);
+      case R_X86_64_IRELATIVE:
+        return isLoaded(target, 0, PF_X);
+      case R_X86_64_64:
+      case R_X86_64_GLOB_DAT:
+      case R_X86_64_JUMP_SLOT:
+      case R_X86_64_DTPMOD64:
+      case R_X86_64_DTPOFF64:
+      case R_X86_64_TPOFF64:
+      case R_X86_64_TLSDESC:
+        return symbolFits(ELF64_R_SYM(r.r_info));
+      default:
+        return ELF64_R_TYPE(r.r_info) == R_X86_64_NONE;
+    }
+#else
+    return r.r_offset != 0;
+#endif
+  }
 
+  static constexpr unsigned kVersionMask = 0x7fff;  ///< the rest of the number says that a version is hidden
   const std::vector<Elf64_Dyn>& entries_;
   const std::vector<Elf64_Phdr>& segments_;
+  Contents contents_;
+  std::vector<char> names_;
+  unsigned lastVersion_ = VER_NDX_GLOBAL;
 };
 }  // namespace
 
@@ -166,7 +272,8 @@ std::string libraryProblem(const std::string& path) {
 
   // The dynamic section.
   std::vector<Elf64_Dyn> entries(dynamic->p_filesz / sizeof(Elf64_Dyn));
-  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size()) || DynamicSection(entries, segments).isDamaged())
+  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size()) ||
+      DynamicSection(entries, segments, file).isDamaged())
     return damaged;
   return {};
 }
