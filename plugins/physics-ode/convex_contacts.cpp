@@ -125,36 +125,75 @@ int ConvexContacts::onPlane(const PlacedShape& a, const Vec3& normal, double off
   return write(max, normal, found);
 }
 
-int ConvexContacts::onMesh(const PlacedShape& a, dGeomID probe, dGeomID mesh, int max, dContactGeom* found) {
+namespace {
+
+/// Moves a contact at the prism around a cylinder to the cylinder.
+void moveToCylinder(const PlacedShape& a, dContactGeom& c) {
+  constexpr double kLying = 0.2;  // sine of the angle up to which a cylinder lies on its side
+  const Vec3 normal = toVec(c.normal), down = -(a.rotation.transpose() * normal);
+  const Vec3 before = a.rotation.transpose() * (toVec(c.pos) - a.position);
+  const double half = a.shape.length / 2, radius = a.shape.radius, end = down.z() < 0 ? -half : half;
+  Vec3 p(before.x(), before.y(), 0);
+  if (std::abs(down.z()) > kAligned)
+    p *= std::min(1.0, radius / p.norm());  // on the end
+  else
+    p = radius * Vec3(down.x(), down.y(), 0).normalized();
+  p.z() = std::abs(down.z()) > kLying ? end : std::clamp(before.z(), -half, half);
+  c.depth += down.dot(p - before);
+  for (int k = 0; k < 3; ++k) c.pos[k] = (a.position + a.rotation * p)[k];
+}
+
+}  // namespace
+
+int ConvexContacts::onMesh(const PlacedShape& a, dGeomID probe, std::span<const dGeomID> sides, int max,
+                           dContactGeom* found) {
   constexpr int kMost = 16;       // points of one question
   constexpr double kTurn = 0.01;  // rad: the lower side of a foot sinks in by millimetres
   constexpr double kSame = 1e-6;  // m^2
-  const auto ask = [&](const Mat3& turn, dContactGeom* to) {
+  const bool round = a.shape.shape == Shape::cylinder;
+  all_.resize(5 * kMost * sides.size());
+  const auto ask = [&](dGeomID mesh, const Mat3& turn, dContactGeom* to) {
     const Mat3 r = turn * a.rotation;
     dMatrix3 rotation;
     toOde(r, rotation);
     dGeomSetPosition(probe, a.position.x(), a.position.y(), a.position.z());
     dGeomSetRotation(probe, rotation);
     updateBounds(probe);
-    return dCollide(probe, mesh, kMost, to, sizeof(dContactGeom));
+    const int found = dCollide(probe, mesh, kMost, to, sizeof(dContactGeom));
+    // ODE's points are halfway between both surfaces; here those of the prism count.
+    for (int i = 0; round && i < found; ++i)
+      for (int k = 0; k < 3; ++k) to[i].pos[k] -= to[i].normal[k] * to[i].depth / 2;
+    return found;
   };
-  all_.resize(std::size_t{5} * kMost);
-  int count = ask(Mat3::Identity(), all_.data());
-  if (count == 0) return 0;
-  const Vec3 x = toVec(all_[0].normal).unitOrthogonal(), y = toVec(all_[0].normal).cross(x);
-  for (const Vec3& axis : {x, y, Vec3(-x), Vec3(-y)}) {
-    const Mat3 turn = Eigen::AngleAxisd(kTurn, axis).toRotationMatrix();
-    dContactGeom* const more = all_.data() + count;
-    const int asked = ask(turn, more);
-    for (int i = 0; i < asked; ++i) {
-      // Turned back: where the point of the hull is, and how deep.
-      dContactGeom c = more[i];
-      const Vec3 turned = toVec(c.pos), p = a.position + turn.transpose() * (turned - a.position);
-      c.depth -= toVec(c.normal).dot(p - turned);
-      for (int k = 0; k < 3; ++k) c.pos[k] = p[k];
-      const bool known = std::any_of(all_.data(), all_.data() + count,
-                                     [&](const dContactGeom& o) { return (toVec(o.pos) - p).squaredNorm() < kSame; });
-      if (c.depth >= 0 && !known) all_[static_cast<std::size_t>(count++)] = c;
+  int count = 0;
+  const auto add = [&](dContactGeom c, bool first) {
+    // Of two sides the one that looks at the middle of the hull holds it.
+    if (sides.size() > 1 && toVec(c.normal).dot(a.position - toVec(c.pos)) <= 0) return;
+    if (round) moveToCylinder(a, c);
+    const auto isSame = [&](const dContactGeom& o) {
+      return (toVec(o.pos) - toVec(c.pos)).squaredNorm() < kSame &&
+             (!first || toVec(o.normal).dot(toVec(c.normal)) > kAligned);
+    };
+    if (c.depth < 0 || ((!first || round) && std::any_of(all_.data(), all_.data() + count, isSame))) return;
+    all_[static_cast<std::size_t>(count++)] = c;
+  };
+  dContactGeom asked[kMost];
+  for (const dGeomID mesh : sides) {
+    const int first = ask(mesh, Mat3::Identity(), asked);
+    if (first == 0) continue;
+    const Vec3 x = toVec(asked[0].normal).unitOrthogonal(), y = toVec(asked[0].normal).cross(x);
+    for (int i = 0; i < first; ++i) add(asked[i], true);
+    for (const Vec3& axis : {x, y, Vec3(-x), Vec3(-y)}) {
+      const Mat3 turn = Eigen::AngleAxisd(kTurn, axis).toRotationMatrix();
+      const int more = ask(mesh, turn, asked);
+      for (int i = 0; i < more; ++i) {
+        // Turned back: where the point of the hull is, and how deep.
+        dContactGeom c = asked[i];
+        const Vec3 turned = toVec(c.pos), p = a.position + turn.transpose() * (turned - a.position);
+        c.depth -= toVec(c.normal).dot(p - turned);
+        for (int k = 0; k < 3; ++k) c.pos[k] = p[k];
+        add(c, false);
+      }
     }
   }
   count = choose(count, max, all_.data());

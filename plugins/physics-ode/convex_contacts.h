@@ -12,6 +12,7 @@
 /// As in: Gregorius 2013, "The Separating Axis Test between Convex Polyhedra", GDC; Sutherland and Hodgman 1974,
 /// "Reentrant polygon clipping".
 
+#include <span>
 #include <vector>
 
 #include "api/model.h"
@@ -37,8 +38,10 @@ class ConvexContacts {
   /// The corners of a hull below a plane through `origin` with the normal `normal`, of length 1, at most `max`.
   int onPlane(const PlacedShape& a, const Vec3& normal, double offset, int max, dContactGeom* found);
   /// Contacts with a static triangle mesh, whose order of triangles says nothing about which points matter: ODE is
-  /// asked again with the hull turned a little to each side, as Bullet does. `probe`: the hull, in no space.
-  int onMesh(const PlacedShape& a, dGeomID probe, dGeomID mesh, int max, dContactGeom* found);
+  /// asked again with the hull turned a little to each side, as Bullet does. `probe`: the hull, in no space; of a
+  /// cylinder the prism around it, whose points are moved to the cylinder, so that it rolls as a round body. `sides`:
+  /// see OdeMesh::sidesAt().
+  int onMesh(const PlacedShape& a, dGeomID probe, std::span<const dGeomID> sides, int max, dContactGeom* found);
   /// Keeps the `max` of `count` contacts that matter most. Returns their number.
   int choose(int count, int max, dContactGeom* found);
 

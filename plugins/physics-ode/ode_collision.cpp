@@ -356,6 +356,11 @@ bool isContact(const dContactGeom& g) {
   return toVec(g.pos).allFinite() && std::isfinite(g.depth) && normal > 0.5 && normal < 2;
 }
 
+void turnNormals(int count, dContactGeom* found) {
+  for (int i = 0; i < count; ++i)
+    for (int k = 0; k < 3; ++k) found[i].normal[k] = -found[i].normal[k];
+}
+
 /// Contacts of a pair with a convex hull.
 int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts& contacts, dContactGeom* found) {
   const bool second = a.shape.shape != Shape::convex;
@@ -376,7 +381,8 @@ int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts&
     case Shape::mesh: {
       // ODE finds those of this order alone, triangle by triangle.
       const std::lock_guard lock(meshMutex());
-      count = other.body == kNone ? contacts.onMesh(placed(hull), hull.shared.hull->probe(), other.geom, max, found)
+      count = other.body == kNone ? contacts.onMesh(placed(hull), hull.shared.hull->probe(),
+                                                    other.shared.mesh->sidesAt(other.geom), max, found)
                                   : contacts.choose(ask(kMaxPerPair), max, found);
       break;
     }
@@ -390,17 +396,32 @@ int collideConvex(const GeomData& a, const GeomData& b, int max, ConvexContacts&
       count = ask(1);
       if (count > 0 && isContact(found[0])) count = contacts.spread(placed(hull), placed(other), max, found);
   }
-  if (second)
-    for (int i = 0; i < count; ++i)
-      for (int k = 0; k < 3; ++k) found[i].normal[k] = -found[i].normal[k];
+  if (second) turnNormals(count, found);
   return count;
 }
 
+/// Contacts of a cylinder with a static mesh.
+int collideOnMesh(GeomData& cylinder, const GeomData& mesh, int max, ConvexContacts& contacts, dContactGeom* found) {
+  if (!cylinder.shared.prism) cylinder.shared.prism = prismAround(cylinder.shape);
+  const std::lock_guard lock(meshMutex());
+  return contacts.onMesh(placed(cylinder), cylinder.shared.prism->probe(), mesh.shared.mesh->sidesAt(mesh.geom), max,
+                         found);
+}
+
+bool isStaticMesh(const GeomData& g) { return g.shape.shape == Shape::mesh && g.body == kNone; }
+
 /// Narrow phase: writes at most `max` contact points to `found`, which has room for kMaxPerPair, and returns their
 /// number.
-int collide(const Pair& pair, int max, ConvexContacts& contacts, dContactGeom* found) {
+int collide(const Pair& pair, int max, CollisionWorld& w, dContactGeom* found) {
   const Shape a = pair.a->shape.shape, b = pair.b->shape.shape;
-  if (a == Shape::convex || b == Shape::convex) return collideConvex(*pair.a, *pair.b, max, contacts, found);
+  if (a == Shape::convex || b == Shape::convex) return collideConvex(*pair.a, *pair.b, max, w.convex, found);
+  if (!w.exactReplay && a == Shape::cylinder && isStaticMesh(*pair.b))
+    return collideOnMesh(*pair.a, *pair.b, max, w.convex, found);
+  if (!w.exactReplay && b == Shape::cylinder && isStaticMesh(*pair.a)) {
+    const int count = collideOnMesh(*pair.b, *pair.a, max, w.convex, found);
+    turnNormals(count, found);
+    return count;
+  }
   if (a != Shape::mesh && b != Shape::mesh)
     return dCollide(pair.a->geom, pair.b->geom, max, found, sizeof(dContactGeom));
   const std::lock_guard lock(meshMutex());
@@ -417,7 +438,7 @@ std::string OdeDetector::nameOf(const GeomData& geom) const {
 
 int OdeDetector::collideOrFail(const Pair& pair, int max, dContactGeom* found) {
   try {
-    return collide(pair, max, world_.convex, found);
+    return collide(pair, max, world_, found);
   } catch (const Failure& failure) {
     node_.messages_.fail(node_, failure.what(),
                          fmt::format("{} and {} do not touch in this step", nameOf(*pair.a), nameOf(*pair.b)));

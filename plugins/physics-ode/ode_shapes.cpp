@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <numeric>
 #ifdef __SANITIZE_THREAD__
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -32,15 +34,58 @@ MeshPointer withTwoTriangles(MeshPointer mesh) {
   return out;
 }
 
-}  // namespace
+/// Which triangles lie on another one that looks at the opposite side, and come behind it: those share an edge, however
+/// each side is cut into triangles.
+std::vector<std::uint8_t> isReverse(const engine::Mesh& m) {
+  // Corners in one place are one.
+  std::vector<std::uint32_t> order(m.vertices.size() / 3), corner(order.size());
+  std::iota(order.begin(), order.end(), 0U);
+  const auto at = [&m](std::uint32_t i) { return std::array{m.vertex(i).x(), m.vertex(i).y(), m.vertex(i).z()}; };
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return at(a) < at(b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    corner[order[i]] = i > 0 && at(order[i]) == at(order[i - 1]) ? corner[order[i - 1]] : order[i];
 
-OdeMesh::OdeMesh(MeshPointer from) : mesh(withTwoTriangles(std::move(from))), data(dGeomTriMeshDataCreate()) {
-  dGeomTriMeshDataBuildDouble(data, mesh->vertices.data(), 3 * sizeof(double),
-                              static_cast<int>(mesh->vertices.size() / 3), mesh->triangles.data(),
-                              static_cast<int>(mesh->triangles.size()), 3 * sizeof(std::uint32_t));
-  // Contacts with convex shapes need the angles at the edges.
-  dGeomTriMeshDataPreprocess2(data, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
+  struct Edge {
+    std::uint32_t from, to, triangle;
+    auto operator<=>(const Edge&) const = default;
+  };
+  std::vector<Edge> edges;
+  std::vector<Vec3> normals;
+  for (std::uint32_t t = 0; 3 * t < m.triangles.size(); ++t) {
+    const std::uint32_t* const c = m.triangles.data() + std::size_t{3} * t;
+    for (int i = 0; i < 3; ++i) edges.push_back({corner[c[i]], corner[c[(i + 1) % 3]], t});
+    normals.push_back((m.vertex(c[1]) - m.vertex(c[0])).cross(m.vertex(c[2]) - m.vertex(c[0])).normalized());
+  }
+  const std::vector<Edge> unsorted = edges;
+  std::sort(edges.begin(), edges.end());
+  constexpr double kOpposite = -1 + 1e-6;  // cosine between the normals
+  std::vector<std::uint8_t> out(normals.size(), 0);
+  for (const Edge& e : unsorted)
+    for (auto other = std::lower_bound(edges.begin(), edges.end(), Edge{e.to, e.from, 0});
+         other != edges.end() && other->from == e.to && other->to == e.from && other->triangle < e.triangle; ++other)
+      if (!out[other->triangle] && normals[other->triangle].dot(normals[e.triangle]) < kOpposite) out[e.triangle] = 1;
+  return out;
 }
+
+/// The triangles of a mesh for which `chosen` has this value.
+MeshPointer partOf(const engine::Mesh& mesh, const std::vector<std::uint8_t>& chosen, std::uint8_t value) {
+  auto out = std::make_shared<engine::Mesh>();
+  // ODE takes no vertices without triangles.
+  std::vector<std::uint32_t> at(mesh.vertices.size() / 3, UINT32_MAX);
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (chosen[i / 3] != value) continue;
+    const std::uint32_t from = mesh.triangles[i];
+    if (at[from] == UINT32_MAX) {
+      at[from] = static_cast<std::uint32_t>(out->vertices.size() / 3);
+      const Vec3 v = mesh.vertex(from);
+      out->vertices.insert(out->vertices.end(), v.begin(), v.end());
+    }
+    out->triangles.push_back(at[from]);
+  }
+  return withTwoTriangles(std::move(out));
+}
+
+}  // namespace
 
 namespace {
 
@@ -54,6 +99,46 @@ void poseTaken() { __tsan_acquire(&posesOrder); }
 void posePutBack() {}
 void poseTaken() {}
 #endif
+
+/// Moves a geom in no space to where another one is.
+void placeLike(dGeomID geom, dGeomID moved) {
+  const dReal* const p = dGeomGetPosition(geom);
+  dGeomSetPosition(moved, p[0], p[1], p[2]);
+  dGeomSetRotation(moved, dGeomGetRotation(geom));
+  updateBounds(moved);
+}
+
+}  // namespace
+
+OdeMesh::OdeMesh(MeshPointer from) : mesh(withTwoTriangles(std::move(from))), data(dGeomTriMeshDataCreate()) {
+  dGeomTriMeshDataBuildDouble(data, mesh->vertices.data(), 3 * sizeof(double),
+                              static_cast<int>(mesh->vertices.size() / 3), mesh->triangles.data(),
+                              static_cast<int>(mesh->triangles.size()), 3 * sizeof(std::uint32_t));
+  // Contacts with convex shapes need the angles at the edges.
+  dGeomTriMeshDataPreprocess2(data, 1U << dTRIDATAPREPROCESS_BUILD_FACE_ANGLES, nullptr);
+  const std::vector<std::uint8_t> reverse = isReverse(*mesh);
+  if (std::find(reverse.begin(), reverse.end(), 1) == reverse.end()) return;
+  for (std::uint8_t side = 0; side < 2; ++side) {
+    sides_[side] = std::make_unique<OdeMesh>(partOf(*mesh, reverse, side));
+    asked_.push_back(dCreateTriMesh(nullptr, sides_[side]->data, nullptr, nullptr, nullptr));
+    poseTaken();
+  }
+}
+
+OdeMesh::~OdeMesh() {
+  for (const dGeomID geom : asked_)
+    if (sides_[0]) destroyGeom(geom);
+  dGeomTriMeshDataDestroy(data);
+}
+
+std::span<const dGeomID> OdeMesh::sidesAt(dGeomID geom) {
+  if (!sides_[0]) asked_ = {geom};
+  for (const dGeomID side : asked_)
+    if (side != geom) placeLike(geom, side);
+  return asked_;
+}
+
+namespace {
 
 dGeomID createHull(const ConvexHull& hull, dSpaceID space, std::size_t faces) {
   return dCreateConvex(space, hull.planes().data(), static_cast<unsigned>(faces), hull.corners().data(),
@@ -80,10 +165,7 @@ dGeomID OdeHull::probe(int which) {
 
 dGeomID OdeHull::probeAt(dGeomID geom, int which) {
   const dGeomID out = probe(which);
-  const dReal* const p = dGeomGetPosition(geom);
-  dGeomSetPosition(out, p[0], p[1], p[2]);
-  dGeomSetRotation(out, dGeomGetRotation(geom));
-  updateBounds(out);
+  placeLike(geom, out);
   return out;
 }
 
@@ -149,6 +231,22 @@ dGeomID create(const ShapeDescription& s, dSpaceID space, MadeShapes& made, Shar
 }
 
 }  // namespace
+
+std::shared_ptr<OdeHull> prismAround(const ShapeDescription& cylinder) {
+  constexpr std::uint32_t kSides = 32;
+  const double radius = cylinder.radius / std::cos(kPi / kSides), half = cylinder.length / 2;
+  auto mesh = std::make_shared<engine::Mesh>();
+  for (std::uint32_t i = 0; i < kSides; ++i) {
+    const double angle = 2 * kPi * i / kSides;
+    for (const double z : {-half, half})
+      mesh->vertices.insert(mesh->vertices.end(), {radius * std::cos(angle), radius * std::sin(angle), z});
+    // Corners of this side: low, high, and the next ones.
+    const std::uint32_t low = 2 * i, high = low + 1, nextLow = (low + 2) % (2 * kSides), nextHigh = nextLow + 1;
+    mesh->triangles.insert(mesh->triangles.end(), {low, nextLow, nextHigh, low, nextHigh, high});
+    if (i >= 1 && i + 1 < kSides) mesh->triangles.insert(mesh->triangles.end(), {0, nextLow, low, 1, high, nextHigh});
+  }
+  return std::make_shared<OdeHull>(std::move(mesh));
+}
 
 dGeomID createGeom(const ShapeDescription& s, dSpaceID space, MadeShapes& made, SharedShape& shared) {
   const dGeomID geom = create(s, space, made, shared);

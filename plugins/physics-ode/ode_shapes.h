@@ -3,6 +3,8 @@
 /// What ODE needs of meshes, hulls and height fields: made once for each, and shared by all geoms that have it.
 
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "api/shape.h"
 #include "convex_hull.h"
@@ -15,9 +17,17 @@ struct OdeMesh {
   std::shared_ptr<const engine::Mesh> mesh;
   dTriMeshDataID data;
   explicit OdeMesh(std::shared_ptr<const engine::Mesh> mesh);
-  ~OdeMesh() { dGeomTriMeshDataDestroy(data); }
+  ~OdeMesh();
   OdeMesh(const OdeMesh&) = delete;
   OdeMesh& operator=(const OdeMesh&) = delete;
+  /// What to collide convex shapes with in place of `geom`: of two triangles that lie on each other and look at
+  /// opposite sides, ODE adds the normals up to nothing. So a mesh with such triangles is asked as two, one side at a
+  /// time. Valid until the next call.
+  std::span<const dGeomID> sidesAt(dGeomID geom);
+
+ private:
+  std::unique_ptr<OdeMesh> sides_[2];
+  std::vector<dGeomID> asked_;  ///< geoms in no space, of sides_; or the last geom
 };
 
 /// A convex hull. ODE refers to its numbers.
@@ -67,9 +77,12 @@ struct MadeShapes {
 struct SharedShape {
   std::shared_ptr<OdeMesh> mesh;
   std::shared_ptr<OdeHull> hull;
+  std::shared_ptr<OdeHull> prism;  ///< of a cylinder that has met a mesh: see prismAround()
   std::shared_ptr<OdeHeights> heights;
 };
 
+/// A prism of 32 sides around a cylinder. ODE's own contacts of cylinders and meshes throw them about.
+std::shared_ptr<OdeHull> prismAround(const engine::ShapeDescription& cylinder);
 /// Creates ODE's geom of a shape. What it refers to is written to `shared`.
 dGeomID createGeom(const engine::ShapeDescription& shape, dSpaceID space, MadeShapes& made, SharedShape& shared);
 void destroyGeom(dGeomID geom);
