@@ -26,6 +26,7 @@ class Case:
         self.file, self.name = file, file.stem
         self.row, self.input, self.right, self.exit, self.slow = 0, "", "", 0, False
         self.engines, self.arguments, self.expected, self.never = [None], ["--duration", "2"], [], []
+        self.unheard = []  # texts in `never` that no other case expects: nothing shows that they would be seen
         mark = "--" if file.suffix == ".lua" else "#"
         entries = []
         for line in file.read_text().splitlines():
@@ -84,6 +85,7 @@ def judge(case, code, out, log):
     wrong = [what for verdict, what in lines if verdict == "wrong"]
     wrong += [f"'{e}' is not in the log" for e in case.expected if e not in text]
     wrong += [f"'{n}' is in the log" for n in case.never if n in text]
+    wrong += [f"'{n}' is never said, but no other case expects it: is it spelt so?" for n in case.unheard]
     if code != case.exit:
         wrong.append(f"exit code {code}")
     if not seen:
@@ -109,6 +111,9 @@ def run(case, engine, folder):
 def run_all(folder, rows=(), names=(), jobs=1, cases=HERE / "cases", slow=False):
     """The results of all cases of a folder with these rows and names, sorted by row."""
     cases = [Case(f) for f in sorted(Path(cases).iterdir()) if f.suffix in (".lua", ".py")]
+    for case in cases:
+        others = [text for c in cases if c is not case for text in c.expected]
+        case.unheard = [n for n in case.never if not any(n in text for text in others)]
     cases = [c for c in cases if (not rows or c.row in rows) and (not names or c.name in names) and (slow or names or not c.slow)]
     work = sorted(((c, e) for c in cases for e in c.engines), key=lambda w: (str(w[0].row).zfill(4), w[0].name))
     with concurrent.futures.ThreadPoolExecutor(jobs) as pool:

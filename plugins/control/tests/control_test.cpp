@@ -113,6 +113,7 @@ TEST_CASE("Sockets of ended processes are removed when a control server starts, 
                  starting = sockets / fmt::format("{}.sock", getppid()),
                  container = sockets / fmt::format("{}-3.sock", gone);
   bind(dead), bind(second), bind(starting);
+  for (const fs::path& file : {dead, second}) REQUIRE(fs::exists(file));
   auto listening = bind(container);
   listening.listen();
   test::TestHost host;
@@ -144,6 +145,7 @@ TEST_CASE("Two simulations in one process have a socket each, and remove it when
   const std::string first = getProperty(a.kernel.create("ControlServer", "/sys/server/control"), "socket").toString();
   Leaf& other = b.kernel.create("ControlServer", "/sys/server/control");
   REQUIRE(getProperty(other, "socket").toString() != first);
+  REQUIRE(fs::exists(first));
   a.kernel.root().require<Node>("/sys/server").removeChildren();
   REQUIRE_FALSE(fs::exists(first));
 }

@@ -212,4 +212,6 @@ TEST_CASE("what an agent draws wrong is reported, and nothing of it is drawn") {
        {"(draw something)", "expected (set name) or a shape, found 'something'"}}));
   CHECK_THAT(artist.draw(action), Catch::StartsWith(expected));
   CHECK(artist.server->sets().empty());
+  CHECK(artist.draw("(draw (point (at 1 2 0)))") == "");
+  CHECK_FALSE(artist.server->sets().empty());
 }

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "absence.h"
 #include "spark/error.h"
 #include "temporary_folder.h"
 #include "test_support.h"
@@ -123,13 +124,23 @@ TEST_CASE("a file sink continues its file, rotates it, and keeps a number of old
   CHECK_THAT(contents(file), Matches("before\n[-0-9 :.]+ info +first\n"));
   h.kernel.log().info("lost");
   setProperty(sink, "file", file.string());
-  for (int i = 0; i < 200; ++i) h.kernel.log().info("line {}", i);
-  LogHost::remove(sink);
-  CHECK_THAT(contents(file), Contains("line 199") && !Contains("lost"));
-  CHECK(fs::file_size(file) <= 1000);
-  CHECK(fs::exists(folder.path() / "log.1.txt"));
-  CHECK(fs::exists(folder.path() / "log.2.txt"));
+  const std::string without = contents(file);
+  h.kernel.log().info("lost");
+  setProperty(sink, "file", "");
+  CHECK(lacks(without, "lost", contents(file)));
+  const auto write = [&] {
+    setProperty(sink, "file", file.string());
+    for (int i = 0; i < 200; ++i) h.kernel.log().info("line {}", i);
+    setProperty(sink, "file", "");
+    CHECK_THAT(contents(file), Contains("line 199"));
+    CHECK(fs::file_size(file) <= 1000);
+    for (const char* name : {"log.1.txt", "log.2.txt"}) CHECK(fs::exists(folder.path() / name));
+  };
+  write();
   CHECK_FALSE(fs::exists(folder.path() / "log.3.txt"));
+  setProperty(sink, "older", 3);
+  write();
+  CHECK(fs::exists(folder.path() / "log.3.txt"));
 }
 
 TEST_CASE("a file that cannot be opened is an error that names the sink and the file") {
@@ -164,6 +175,7 @@ TEST_CASE("a file sink takes only a regular file or a new one, and does not wait
   CHECK_THAT(refusal(folder.file("a") + std::string("\0b", 2)), Contains("expected a name without NUL bytes"));
   CHECK_FALSE(fs::exists(folder.path() / "a"));
   CHECK(refusal(folder.file("new.txt")) == "it was accepted");
+  CHECK(fs::exists(folder.path() / "new.txt"));
 }
 
 TEST_CASE("a sink that cannot write says so once on stderr, with its path and what to do") {

@@ -81,13 +81,14 @@ TEST_CASE("Each mesh file and texture has a path, which no other host shares; na
   CHECK(list.link(AssetKind::mesh, "StdCapsule 0.1 0.2").empty());
   CHECK(list.find(chair)->resource == "models/chair.obj");
   CHECK_FALSE(other.find(chair));
-  other.link(AssetKind::mesh, "models/chair.obj");
+  CHECK(other.find(other.link(AssetKind::mesh, "models/chair.obj")));
   CHECK_FALSE(other.find(chair));
 }
 
 TEST_CASE("No path reaches a resource that no scene has named") {
   AssetList list;
   const std::string path = list.link(AssetKind::texture, "textures/wood.png");
+  CHECK(list.find(path));
   const std::string folder = path.substr(0, path.rfind('/') + 1);
   for (const std::string& bad : {folder + "1", folder + "-1", folder + "0/..", folder + "../0", folder + "+0", folder,
                                  folder + "99999999999999999999", std::string("mesh/0"), "mesh" + path.substr(7),

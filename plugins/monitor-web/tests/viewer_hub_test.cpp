@@ -3,12 +3,14 @@
 #include <catch2/catch.hpp>
 #include <thread>
 
+#include "absence.h"
 #include "piece_reader.h"
 #include "spark/log.h"
 
 using namespace spark;
 using namespace spark::web;
 using Catch::Contains;
+using spark::test::count;
 using spark::web::test::FrameReader;
 using spark::web::test::ReadPiece;
 using std::chrono::milliseconds;
@@ -104,12 +106,6 @@ struct HubFixture {
   std::uint64_t shape = 1, ids = 0;
   int frames = 0, mode = 0, foul = 0;
 };
-
-int count(const std::string& text, const std::string& part) {
-  int n = 0;
-  for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
 
 }  // namespace
 

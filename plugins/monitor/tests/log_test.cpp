@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "absence.h"
 #include "api/drawing.h"
 #include "stage.h"
 
@@ -216,9 +217,8 @@ TEST_CASE("a log that cannot be written is reported once, and the server continu
   monitor.read();
   for (int i = 0; i < 100; ++i) stage.cycle();
   CHECK(!monitor.idle());
-  const auto first = stage.text.find("cannot write the log /nonexistent/folder/x.log: No such file or directory");
-  REQUIRE(first != std::string::npos);
-  CHECK(stage.text.find("cannot write the log", first + 1) == std::string::npos);
+  CHECK_THAT(stage.text, Catch::Contains("cannot write the log /nonexistent/folder/x.log: No such file or directory"));
+  CHECK(count(stage.text, "cannot write the log") == 1);
 }
 
 TEST_CASE("a recorded game is played to a monitor record by record, and late monitors can join") {

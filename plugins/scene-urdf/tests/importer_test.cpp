@@ -57,6 +57,8 @@ TEST_CASE("A robot of URDF is in the tree with its joints, perceptors and effect
   CHECK(effectors[1]->predicate() == "elbow");
   CHECK(getProperty(*h.find("arm"), "innerCollisionDisabled").toBool());
   CHECK(h.text.empty());
+  h.import("<robot name='odd'><link name='l'><wheel/></link></robot>");
+  CHECK_THAT(h.text, Contains("<wheel>"));
 }
 
 TEST_CASE("Two robots stand side by side, each with a prefix, fixed or free") {

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "absence.h"
 #include "api/agents.h"
 #include "api/monitor.h"
 #include "api/physics.h"
@@ -11,13 +12,6 @@
 #include "test_support.h"
 
 namespace spark::test {
-
-/// Number of occurrences of `what` in `text`, overlapping ones included.
-inline int count(const std::string& text, const std::string& what) {
-  int n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
 
 /// Sends the actions in `next` once, and stores its percepts.
 class Puppet : public Behavior {

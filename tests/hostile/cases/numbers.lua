@@ -6,7 +6,6 @@
 -- args: --duration 1e6 --log-level error
 -- slow: yes
 -- expect: right: trials
--- never: wrong:
 include "house.lua"
 local talk = option{ name = "talk", default = false, doc = "Says each trial, for one that ends the host." }
 local only = option{ name = "only", default = "", doc = "Only trials that contain this text." }

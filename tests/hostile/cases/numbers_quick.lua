@@ -5,6 +5,5 @@
 -- engines: all
 -- args: --duration 1e6 --log-level error
 -- expect: right: trials
--- never: wrong:
 QUICK = true
 include "numbers.lua"

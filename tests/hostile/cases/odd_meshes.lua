@@ -5,7 +5,6 @@
 -- engines: all
 -- args: --duration 1e6 --log-level error
 -- expect: right: meshes
--- never: wrong:
 include "house.lua"
 files() scene() physics(engineOption()) simulation()
 local space = get "/usr/scene/space"

@@ -15,8 +15,10 @@ SECRETS = {
     "commToken": "com-0123456789abcdef",
     "mine": "my-0123456789abcdef",
 }
+PUBLIC = "pub-0123456789abcdef"  # the value of an option that is no secret: it is found wherever the others must not be
 CONFIG = """
 include "house.lua"
+option{ name = "shown", default = "" }
 files() scene() physics() simulation()
 plugin "gamecontrol"
 spades{ types = "", players = 0 }
@@ -29,6 +31,7 @@ with Folder() as folder:
     (folder / "served.lua").write_text(CONFIG)
     sets = [word for key, value in SECRETS.items() for word in ("--set", f"{key}={value}")]
     sets[1:2] = []
+    sets += ["--set", f"shown={PUBLIC}"]
     sets[0] = f"--set=webToken={SECRETS['webToken']}"
     running = Live(
         "--config",
@@ -61,6 +64,10 @@ with Folder() as folder:
     running.ctl("snapshot", folder / "s.mcap")
     code, log = running.stop()
     judge("it ended well", code == 0 and "arguments" in seen, log + seen)
+    judge("what is no secret is read", PUBLIC in seen, seen)
+    for file in ("a.mcap", "s.mcap"):
+        judge(f"what is no secret is in {file}", PUBLIC.encode() in mcap.unpacked(folder / file))
+    # What the inputs of a recording have is coded: tests/system/recording_test.cpp decodes them.
     for name, secret in {**SECRETS, "a call": later}.items():
         judge(f"{name} is no property", secret not in seen, seen)
         for file in ("a.mcap", "s.mcap"):

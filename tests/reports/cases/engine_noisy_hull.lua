@@ -3,7 +3,7 @@
 -- right: it lies flat, and stdout has JSON lines only
 -- engines: OdeEngine ArticulatedEngine BulletEngine
 -- args: --duration 1
--- never: counterclockwise
+-- never: warning
 include "../lib/judge.lua"
 include "house.lua"
 files() scene() physics(engineOption()) simulation()

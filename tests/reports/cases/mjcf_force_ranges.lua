@@ -3,7 +3,7 @@
 -- right: each force stays in its own range: the joints turn with -1.5, -1.25 and -1.5 rad/s^2
 -- engines: all
 -- args: --duration 0.5
--- never: force range
+-- never: warning
 include "house.lua"
 include "../lib/judge.lua"
 files() scene() physics(engineOption())

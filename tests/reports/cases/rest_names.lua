@@ -5,7 +5,6 @@
 -- expect: flawed.wbt
 -- never: Mujoco
 -- never: MuJoCo
--- never: MJCF
 -- never: equality
 -- never: condim
 -- never: solref

@@ -3,7 +3,6 @@
 -- right: the waxed one slides with 4.82 m/s^2, the other one stays
 -- engines: all
 -- args: --duration 1.1
--- never: contactProperties
 include "../lib/judge.lua"
 include "../lib/webots.lua"
 webotsCase()

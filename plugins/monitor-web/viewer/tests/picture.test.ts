@@ -85,12 +85,12 @@ describe("pieces", () => {
 
   it("give humanoids their team's color, with numbers in front and behind", () => {
     const scene = new SyntheticWorld();
-    scene.humanoid("left", 3, 0, 0);
-    const robot = scene.humanoid("right", 4, 1, 0);
+    const other = scene.humanoid("left", 3, 0, 0), robot = scene.humanoid("right", 4, 1, 0);
     const picture = makePicture(scene.world());
-    const colours = new Set(picture.pieces.filter(piece => piece.node === robot.torso).map(piece => piece.colour));
-    expect(colours).toContain(usualTeams.right);
-    expect(colours).not.toContain(usualTeams.left);
+    const colours = (torso: number) => new Set(picture.pieces.filter(piece => piece.node === torso).map(piece => piece.colour));
+    expect(colours(robot.torso)).toContain(usualTeams.right);
+    expect(colours(other.torso)).toContain(usualTeams.left);
+    expect(colours(robot.torso)).not.toContain(usualTeams.left);
     expect(picture.decals.map(decal => decal.robot)).toEqual([0, 0, 1, 1]);
     expect(picture.robotOf[robot.head]).toBe(1);
   });
