@@ -290,13 +290,18 @@ TEST_CASE("a goal directly from the kick-off does not count", "[soccer]") {
   CHECK(h.score() == "{0, 0}");
 }
 
-TEST_CASE("half time, the second half's kick-off and the end come at their times", "[soccer]") {
+TEST_CASE("half time, the second half's kick-off and the end come at their times, and players get new batteries",
+          "[soccer]") {
   Match h;
   h.set("RuleHalfTime", 1);
   h.set("AutomaticKickOff", true);
   h.set("WaitBeforeKickOff", 0.5);
+  setProperty(h.stateOf(1), "battery", 40);
   setProperty(h.at("/sys/server/gamecontrol/GameStateAspect"), "time", 0.5);
-  h.runSeconds(0.6);
+  h.runSeconds(0.4);
+  CHECK(getProperty(h.stateOf(1), "battery").toNumber() == 40);
+  h.runSeconds(0.2);
+  CHECK(getProperty(h.stateOf(1), "battery").toNumber() == 100);
   CHECK(h.mode() == "BeforeKickOff");
   CHECK(h.get("/sys/server/gamecontrol/GameStateAspect", "half").toInteger() == 2);
   const double before = h.gameTime();
