@@ -8,6 +8,7 @@
 #include "spark/error.h"
 #include "spark/plugin_object.h"
 #include "spark/script.h"
+#include "spark/script_text.h"
 
 namespace spark::rsg {
 
@@ -19,6 +20,11 @@ class Located : public Error {
 };
 
 Error tooLong() { return Error(fmt::format("expected a text of at most {} bytes, found a longer one", kMaxText)); }
+/// True for methods as those of scripted perceptors, which attach a script to their node.
+bool attachesScript(const Method& m) {
+  return m.name == "script" && m.parameters.size() == 2 && m.parameters.front().starts_with("file:");
+}
+
 /// Uses the plugins that provide a class and its bases, as models of other languages do.
 void provide(Kernel& kernel, std::string_view className) {
   if (!kernel.findClass(className))
@@ -212,7 +218,7 @@ std::string Run::resourceOf(const std::string& file) const {
 }
 
 void Run::attachScript(Leaf& node, const List& arguments) {
-  if (arguments.empty()) throw Error("expected (attachScript <file> <arguments>...), found no file");
+  if (arguments.empty()) throw Error("expected the file of a script and its arguments, found no file");
   List given;
   for (auto it = arguments.begin() + 1; it != arguments.end(); ++it) {
     const std::string text = it->plain();
@@ -226,10 +232,20 @@ void Run::attachScript(Leaf& node, const List& arguments) {
     argument = given.front();
   else if (!given.empty())
     argument = Value(std::move(given));
-  importer_.kernel()
-      .root()
-      .require<IScriptServer>(IScriptServer::kPath)
-      .attach(node, arguments.front().toString(), argument);
+  attachScript(node, arguments.front().toString(), argument);
+}
+
+/// A script of the file server; by a name without `..` also one that a config may attach. There are no others.
+void Run::attachScript(Leaf& node, const std::string& file, const Value& argument) {
+  const Node& root = importer_.kernel().root();
+  const std::string resource = resourceOf(file);
+  if (resource.starts_with('/') || ("/" + resource + "/").find("/../") != std::string::npos)
+    throw Error(fmt::format("expected a script beside this file or below the folders of scenes, found '{}'", file));
+  auto* const files = root.find<IFileServer>();
+  if (files && files->exists(resource))
+    root.require<IScriptText>(IScriptServer::kPath).attachText(node, files->read(resource), resource, true, argument);
+  else
+    root.require<IScriptServer>(IScriptServer::kPath).attach(node, file, argument);
 }
 
 const Method* Run::methodOf(const Statement& s, Leaf& node) const {
@@ -245,6 +261,7 @@ void Run::invoke(const Statement& s, Leaf& node, const List& arguments) {
   if (s.kind == Statement::Kind::set) return set(s, node, arguments);
   if (s.text == "attachScript") return attachScript(node, arguments);
   const Method* method = methodOf(s, node);
+  if (method && attachesScript(*method)) return attachScript(node, arguments);
   if (!method) {
     if (s.complained && !strict()) return;
     std::vector<std::string> names;

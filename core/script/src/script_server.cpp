@@ -77,9 +77,11 @@ void ScriptServer::attach(Leaf& node, std::string_view file, const Value& argume
   running->attachFile(node, file, nullptr, [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
 
-List ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) {
+List ScriptServer::attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
+                              const Value& arguments) {
   const auto running = impl_;
-  return running->attach(node, text, fmt::format("={}", chunkName), trusted);
+  return running->attach(node, text, fmt::format("={}", chunkName), trusted,
+                         [&](lua_State* L) { script::pushArguments(L, arguments); });
 }
 
 void ScriptServer::warnOfUnsaved() { impl_->warnsOfUnsaved = true; }

@@ -50,7 +50,8 @@ class ScriptServer : public Leaf, public IScriptServer, public IScriptText {
   /// Runs a chunk of text in the environment of configs and returns its first result. Throws Error if it fails.
   Value run(std::string_view text, std::string_view chunkName);
   void attach(Leaf& node, std::string_view file, const Value& arguments = {}) override;
-  List attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted) override;
+  List attachText(Leaf& node, std::string_view text, std::string_view chunkName, bool trusted,
+                  const Value& arguments = {}) override;
   /// From now on handlers that scripts add are looked through: a warning names each global and local in which one keeps
   /// what is neither saved nor hashed.
   void warnOfUnsaved();
