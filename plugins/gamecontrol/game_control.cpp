@@ -259,7 +259,7 @@ void GameControl::closeWithoutRobot() {
 /// of untrusted clients, which might join again and again to slow the match down.
 bool GameControl::mayLoad(const AgentAspect& agent) {
   if (realTime()) return loads_++ < loadsPerCycle_;
-  const Participant* p = participantOf(agent);
+  const Participant* p = agents_.of(agent);
   loadBudget_.setCapacity(2 * maxAgents_);
   return !p || p->inside() || p->expected() || loadBudget_.take(now());
 }
@@ -371,7 +371,7 @@ void GameControl::removeLeaving() {
   for (auto it = removed; it != participants_.end(); ++it) {
     Participant& p = **it;
     logInfo(fmt::format("{} leaves.", p.label()));
-    if (p.excluded() && p.behavior()) refusedBehaviors_.push_back(p.behavior()->id());
+    if (p.excluded() && p.behavior()) minds_.exclude(*p.behavior());
     if (p.isRule()) continue;
     if (AgentAspect* aspect = p.aspect()) {
       forEachAspect([&p](ControlAspect& rule) {
@@ -393,48 +393,10 @@ void GameControl::release(AgentAspect& aspect) {
     if (Leaf* const part = aspect.child(given)) aspect.remove(*part);
 }
 
-/// The aspect that a mind outside of /usr/agent drives: that of an object, or a rule; nullptr: it drives nothing.
-AgentAspect* GameControl::aspectFor(Behavior& mind) const {
-  auto* const aspect = mind.ancestor<AgentAspect>();
-  if (!aspect) return nullptr;
-  const auto drives = [aspect](const auto& p) { return p->aspect() == aspect && !p->leaving(); };
-  if (std::any_of(participants_.begin(), participants_.end(), drives)) return nullptr;
-  // In a robot only the outermost aspect is an agent's. Rules may have others above them.
-  const bool outermost = &aspect->outermost() == aspect;
-  return aspect->as<ControlAspect>() || outermost ? aspect : nullptr;
-}
-
 void GameControl::joinBehaviors() {
-  if (!behaviorsTree_.isStale(*this)) return;
-  Node& root = kernel().root();
-  std::vector<Behavior*> behaviors;
-  if (auto* home = root.find<Node>("/usr/agent")) home->collect(behaviors);
-  const std::size_t atHome = behaviors.size();
-  auto* const server = root.find<ISceneServer>();
-  if (Node* const scene = server ? server->activeScene() : nullptr) scene->collect(behaviors);
-  root.collect(behaviors);  // in scenes that are not active, and of rules
-  const auto known = [this](Behavior* b) {
-    return std::any_of(participants_.begin(), participants_.end(), [b](const auto& p) { return p->behavior() == b; }) ||
-           std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end();
-  };
-  // One that starts may be a script, which removes others.
-  const std::vector<Ref<Behavior>> joining(behaviors.begin(), behaviors.end());
-  for (std::size_t i = 0; i < joining.size(); ++i) {
-    Behavior* const b = joining[i].get();
-    if (!b || known(b)) continue;
-    auto* const aspect = i < atHome ? nullptr : aspectFor(*b);
-    if (i >= atHome && !aspect) continue;
-    const std::uint64_t id = b->id();
-    if (!join(std::make_unique<Participant>(*b, actedAt_), aspect)) refusedBehaviors_.push_back(id);
-  }
-  for (const Ref<Behavior>& mind : joining)
-    if (mind && !known(mind.get()))
-      idle_.report(
-          *mind,
-          "drives nothing: expected it below /usr/agent, or as the only mind below a rule or below the AgentAspect "
-          "of an object");
-  idle_.reportEffectors(*this);
-  behaviorsTree_.changed(*this);  // ignore the changes that joining made
+  minds_.join(*this, [this](Behavior& mind, AgentAspect* aspect) {
+    return join(std::make_unique<Participant>(mind, actedAt_), aspect);
+  });
 }
 
 void GameControl::joinNewcomers() {
@@ -524,16 +486,6 @@ void GameControl::forEachAspect(F f) {
     if (ControlAspect* rule = aspect.get()) f(*rule);
 }
 
-/// An aspect may be removed from the tree at any time. Until the next act phase removes its agent, the agent exists,
-/// but is not listed.
-const std::vector<AgentAspect*>& GameControl::agents() const {
-  if (!agentsTree_.changed(*this)) return agents_;
-  agents_.clear();
-  for (const auto& p : participants_)
-    if (AgentAspect* a = p->aspect(); a && a->isLinked() && !p->isRule()) agents_.push_back(a);
-  return agents_;
-}
-
 /// Numbers of rules with minds are apart from those of agents, and above them.
 int GameControl::numberOfNextRule() const {
   constexpr int kFirst = 1'000'000'000;
@@ -542,55 +494,28 @@ int GameControl::numberOfNextRule() const {
   return next;
 }
 
-List GameControl::agentPaths() const {
-  List out;
-  for (const AgentAspect* const agent : agents()) out.emplace_back(agent->path());
-  return out;
-}
-
-AgentAspect& GameControl::agentAt(const Value& agent) const {
-  const std::string which = agent.plain();
-  const Leaf* const named = agent.isString() ? kernel().root().find<Leaf>(which) : nullptr;
-  const auto isNumber = [&](int number) {
-    return agent.isNumber() ? agent.toNumber() == number : std::to_string(number) == which;
-  };
-  std::string known;
-  for (AgentAspect* const a : agents()) {
-    if (named == a || isNumber(a->number())) return *a;
-    known += fmt::format("{}{} {}", known.empty() ? "" : ", ", a->number(), a->path());
-  }
-  throw Error(fmt::format("expected the number or the path of an agent, found '{}'; {}", which,
-                          known.empty() ? "there is none" : "there are " + known));
-}
-
-GameControl::Participant* GameControl::participantOf(const AgentAspect& agent) const {
-  for (const auto& p : participants_)
-    if (p->aspect() == &agent) return p.get();
-  return nullptr;
-}
-
 bool GameControl::remark(const AgentAspect& agent, std::string_view predicate, std::string_view why) {
-  Participant* const p = participantOf(agent);
+  Participant* const p = agents_.of(agent);
   return !p || p->remark(agentLog(), cycle_, predicate, why);
 }
 
 const Predicates* GameControl::percepts(const AgentAspect& agent) const {
-  const Participant* p = participantOf(agent);
+  const Participant* p = agents_.of(agent);
   return p && !p->percepts().empty() ? &p->percepts() : nullptr;
 }
 
 double GameControl::latency(const AgentAspect& agent) const {
-  const Participant* p = participantOf(agent);
+  const Participant* p = agents_.of(agent);
   return p ? p->latency() : std::numeric_limits<double>::quiet_NaN();
 }
 
 bool GameControl::requiresWhatItAsks(const AgentAspect& agent) const {
-  const Participant* const p = participantOf(agent);
+  const Participant* const p = agents_.of(agent);
   return requireAll_ && p && p->requiresNow(cycle_);
 }
 
 void GameControl::reject(AgentAspect& agent, const std::string& why) {
-  Participant* const p = participantOf(agent);
+  Participant* const p = agents_.of(agent);
   if (!p || p->rejected()) return;
   logInfo(fmt::format("{} does not take part: {}.", p->label(), why));
   p->reject(why);
@@ -605,12 +530,12 @@ List GameControl::senseNow(Node& node) {
 }
 
 IConnection* GameControl::connection(const AgentAspect& agent) const {
-  const Participant* p = participantOf(agent);
+  const Participant* p = agents_.of(agent);
   return p ? p->connection() : nullptr;
 }
 
 void GameControl::agentsChanged() {
-  agentsTree_.lookAgain();
+  agents_.lookAgain();
   if (auto* server = kernel().root().find<ISceneServer>()) server->markModified();
 }
 
@@ -637,30 +562,12 @@ void GameControl::saveState(StateWriter& out) const {
   out.write(cyclesToTurn_);
   out.aside(released_ ? "released" : "");
   if (out.keeps()) out.aside(std::to_string(arrivals_));
-  if (out.keeps()) out.aside(refusedPaths());
+  if (out.keeps()) out.aside(minds_.excluded(kernel().root()));
   out.write(static_cast<std::int64_t>(participants_.size()));
   for (const auto& p : participants_) {
     out.write(p->number());
     p->save(out);
   }
-}
-
-/// The minds that do not join, one in a line.
-std::string GameControl::refusedPaths() const {
-  std::vector<Behavior*> all;
-  kernel().root().collect(all);
-  std::string out;
-  for (const Behavior* b : all)
-    if (std::find(refusedBehaviors_.begin(), refusedBehaviors_.end(), b->id()) != refusedBehaviors_.end())
-      out += b->path() + "\n";
-  return out;
-}
-
-void GameControl::refuse(std::string_view paths) {
-  refusedBehaviors_.clear();
-  for (std::size_t end; (end = paths.find('\n')) != paths.npos; paths.remove_prefix(end + 1))
-    if (const auto* const mind = kernel().root().find<Behavior>(paths.substr(0, end)))
-      refusedBehaviors_.push_back(mind->id());
 }
 
 void GameControl::loadState(StateReader& in) {
@@ -669,7 +576,7 @@ void GameControl::loadState(StateReader& in) {
   cyclesToTurn_ = static_cast<int>(in.readInteger());
   released_ = in.readString() == "released";
   arrivals_ = std::strtoull(in.readString().c_str(), nullptr, 10);
-  refuse(in.readString());
+  minds_.setExcluded(in.readString(), kernel().root());
   std::vector<std::unique_ptr<Participant>> restored;
   for (std::size_t n = in.readCount(); n > 0; --n) {
     const auto number = static_cast<int>(in.readInteger());

@@ -11,9 +11,10 @@
 #include "api/agents.h"
 #include "api/match.h"
 #include "api/succession.h"
+#include "gamecontrol/agent_list.h"
 #include "gamecontrol/hold.h"
-#include "gamecontrol/idle_reports.h"
 #include "gamecontrol/lockstep_gate.h"
+#include "gamecontrol/minds.h"
 #include "gamecontrol/participant.h"
 #include "gamecontrol/questions.h"
 #include "gamecontrol/vacancies.h"
@@ -34,7 +35,7 @@ class GameControl : public Node,
   static constexpr const char* kCreateEffector = "_CreateEffector";
   static void describe(Description<GameControl>& d);
 
-  const std::vector<AgentAspect*>& agents() const override;
+  const std::vector<AgentAspect*>& agents() const override { return agents_.all(*this); }
   void removeAgent(AgentAspect& agent, bool close) override;
   void disqualify(AgentAspect& agent, std::string_view why) override;
   std::string judgeRequest(AgentAspect& agent, const PartRequest& request) override;
@@ -83,15 +84,11 @@ class GameControl : public Node,
   void joinBehaviors();
   void joinNewcomers();
   bool join(std::unique_ptr<Participant> participant, AgentAspect* ready = nullptr);
-  AgentAspect* aspectFor(Behavior& mind) const;
-  std::string refusedPaths() const;
-  void refuse(std::string_view paths);
   void executeTurn(const Event& event);
   int numberOfNextRule() const;
-  List agentPaths() const;
-  AgentAspect& agentAt(const Value& agent) const;
-  void disqualifyAgent(const Value& agent, const std::string& why) { disqualify(agentAt(agent), why); }
-  void removeAgentAt(const Value& agent) { removeAgent(agentAt(agent), true); }
+  List agentPaths() const { return agents_.paths(*this); }
+  void disqualifyAgent(const Value& agent, const std::string& why) { disqualify(agents_.at(agent, *this), why); }
+  void removeAgentAt(const Value& agent) { removeAgent(agents_.at(agent, *this), true); }
   AgentAspect& createAspect(Node& parent, const std::string& name);
   bool seat(IConnection& connection);
   bool resume(Participant* player, Participant& client);
@@ -109,7 +106,6 @@ class GameControl : public Node,
   Clock::time_point now() const;
   bool holding() const { return expect_ > 0 && !released_; }
   Participant* participantOf(const IConnection& connection) const;
-  Participant* participantOf(const AgentAspect& agent) const;
   void agentsChanged();
   void logInfo(const std::string& line);
   gamecontrol::AgentLog& agentLog();
@@ -120,12 +116,9 @@ class GameControl : public Node,
 
   gamecontrol::Participants participants_;  ///< in order of number
   gamecontrol::Participants newcomers_;     ///< in order of arrival
-  std::vector<std::uint64_t>
-      refusedBehaviors_;  ///< ids of behaviors whose agents could not be made or were excluded; not tried again
-  gamecontrol::IdleReports idle_;
+  gamecontrol::AgentList agents_{participants_};
+  gamecontrol::Minds minds_{participants_};
   gamecontrol::Questions questions_;
-  mutable std::vector<AgentAspect*> agents_;  ///< of participants_; a cache that agents() updates
-  mutable TreeWatch agentsTree_;
   mutable std::size_t lastHeard_ = 0;  ///< index of the participant that sent the last message
   gamecontrol::Hold hold_;
   Link<IJoinPolicy> joinPolicy_;
@@ -155,7 +148,7 @@ class GameControl : public Node,
   int cyclesToTurn_ = 0;     ///< cycles without agents between now and their next turn
   bool isTurn_ = true;       ///< agents act and sense in this cycle
   std::uint64_t round_ = 0;  ///< number of the sense phase
-  TreeWatch parsersTree_, robotsTree_, perceptorsTree_, behaviorsTree_;
+  TreeWatch parsersTree_, robotsTree_, perceptorsTree_;
   Clock::time_point actedAt_{};   ///< when the last act phase began
   Clock::time_point lookedAt_{};  ///< when ready() or act() began last; input has been read since
 };
