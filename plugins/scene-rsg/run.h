@@ -61,7 +61,8 @@ class Run {
   void set(const Statement& s, Leaf& node, const List& arguments);
   void attachScript(Leaf& node, const List& arguments);
   void attachScript(Leaf& node, const std::string& file, const Value& argument);
-  /// The resource that an import, or a script, of the name `file` means: the one beside this file goes before the one from the root.
+  /// The resource that an import, or a script, of the name `file` means: the one beside this file goes before the one
+  /// from the root.
   std::string resourceOf(const std::string& file) const;
   /// Before a call of a method: what it may change or remove is older than the import or can be undone.
   void beforeCall(const Statement& s, Leaf& node);

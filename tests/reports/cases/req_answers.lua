@@ -18,7 +18,9 @@ rule:on("request", function(self, event)
 end)
 local limit = control:new("ActionLimitAspect", "limit")
 limit.predicate, limit.perCycle = "request", 12
-local function ask(name, more) return "(request (perceptor TimePerceptor) (name " .. name .. ")" .. (more or "") .. ")" end
+local function ask(name, more)
+  return "(request (perceptor TimePerceptor) (name " .. name .. ")" .. (more or "") .. ")"
+end
 local function many(n, name)
   local out = {}
   for i = 1, n do out[i] = ask(name .. i) end

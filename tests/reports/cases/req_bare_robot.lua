@@ -17,7 +17,9 @@ local calls, heard, bare = 0, {}, 0
 new("ScriptBehavior", "/usr/agent/asks"):on("think", function(self, event)
   calls = calls + 1
   self.actions = "(force 1 0 0)"
-  if calls == 3 then self.actions = "(request (perceptor GPS) (name gps))(request (effector ForceEffector) (name push))" end
+  if calls == 3 then
+    self.actions = "(request (perceptor GPS) (name gps))(request (effector ForceEffector) (name push))"
+  end
   for _, percept in ipairs(event.data) do heard[percept[1]] = true end
 end)
 new("ScriptBehavior", "/usr/agent/none"):on("think", function() bare = bare + 1 end)

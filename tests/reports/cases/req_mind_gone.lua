@@ -33,7 +33,8 @@ on("rule", function(self, event)
     first:delete()
     ruler:delete()
   elseif event.cycle == 16 then
-    judge("the aspect stays, with its perceptors", get("/usr/scene/thing/agent/gps") and get("/usr/scene/thing/agent/more"))
+    judge("the aspect stays, with its perceptors",
+      get("/usr/scene/thing/agent/gps") and get("/usr/scene/thing/agent/more"))
     judge("without what game control gave it", not get("/usr/scene/thing/agent/_Request"))
     judge("it is no agent", thing.number == 0 and control.agentCount == 1)
     judge("the rule stays", get("/sys/server/gamecontrol/rule/gps"))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # row: p95
-# input: mounts without an address, without a path, at ports where nothing listens, of nodes that are not there, twice at
-#    one place; and a remote rule with two handlers, of which the first refuses
+# input: mounts without an address, without a path, at ports where nothing listens, of nodes that are not there, twice
+#    at one place; and a remote rule with two handlers, of which the first refuses
 # right: each error is a sentence, the node of a mount that failed is gone, a second attempt works and can be simulated
 #    again; the refusal counts
 import sys

@@ -47,7 +47,8 @@ on("rule", function(self, event)
     object("limited")
   elseif event.cycle == 25 then
     for _, name in ipairs(order) do
-      local moves, there = get("/usr/scene/" .. name .. "/body").velocity[1] ~= 0, get("/usr/scene/" .. name .. "/agent")
+      local path = "/usr/scene/" .. name
+      local moves, there = get(path .. "/body").velocity[1] ~= 0, get(path .. "/agent")
       if name == "good" then
         judge("what is granted: it takes part", moves and there)
       else

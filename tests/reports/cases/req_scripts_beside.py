@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # row: pF13
 # input: scene files attach scripts beside them, above them, from the root, of the config; and some that are elsewhere
-# right: the nearest one runs, with its arguments, also of a ScriptPerceptor; names that lead out are errors, and what is
-#    there does not run; a recording plays without the folder
+# right: the nearest one runs, with its arguments, also of a ScriptPerceptor; names that lead out are errors, and what
+#    is there does not run; a recording plays without the folder
 import shutil
 import sys
 from pathlib import Path
@@ -26,8 +26,8 @@ with Folder() as folder:
     agent, parts = folder / "scenes/rsg/agent", folder / "scenes/rsg/parts"
     agent.mkdir(parents=True)
     parts.mkdir()
-    for where, name in ((agent, "both"), (folder / "scenes", "both"), (parts, "up"), (parts, "root"), (folder, "config"),
-                        (folder, "outside")):
+    for where, name in ((agent, "both"), (folder / "scenes", "both"), (parts, "up"), (parts, "root"),
+                        (folder, "config"), (folder, "outside")):
         (where / f"{name}.lua").write_text(SAYS % f"{where.name} {name}")
     calls = ("(attachScript both.lua 1)", "(attachScript ../parts/up.lua 2)", "(attachScript rsg/parts/root.lua 3)",
              "(attachScript config.lua 4)")
