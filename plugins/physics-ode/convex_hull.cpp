@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace spark::ode {
 
@@ -11,6 +12,45 @@ namespace {
 constexpr double kFlat = 1e-6;
 /// Sine of the angle up to which an edge of a face goes straight on.
 constexpr double kStraight = 1e-9;
+
+/// Finds the corners of a plane, which touches the hull: from one to the next, for all that are above a plane are
+/// connected by edges of the hull. So a face takes the time of its corners and their neighbours, not that of the hull.
+class PlaneSearch {
+ public:
+  explicit PlaneSearch(const engine::Mesh& m)
+      : mesh_(m), trianglesAt_(m.vertices.size() / 3), seen_(m.vertices.size() / 3) {
+    for (std::size_t i = 0; i < m.triangles.size(); ++i)
+      trianglesAt_[m.triangles[i]].push_back(static_cast<std::uint32_t>(i / 3));
+  }
+  const std::vector<std::uint32_t>& trianglesAt(std::uint32_t corner) const { return trianglesAt_[corner]; }
+  /// The corners whose height over the plane, which is that of triangle `t`, is at most `tolerance`, in order.
+  template <class Height>
+  const std::vector<std::uint32_t>& find(std::size_t t, const Height& height, double tolerance) {
+    found_.clear();
+    ++round_;
+    push(t);
+    while (!waiting_.empty()) {
+      const std::uint32_t v = waiting_.back();
+      waiting_.pop_back();
+      const double h = height(v);
+      if (h < -tolerance) continue;
+      if (h <= tolerance) found_.push_back(v);
+      for (const std::uint32_t next : trianglesAt_[v]) push(next);
+    }
+    std::sort(found_.begin(), found_.end());
+    return found_;
+  }
+
+ private:
+  void push(std::size_t triangle) {
+    for (std::size_t k = 3 * triangle; k < 3 * triangle + 3; ++k)
+      if (const std::uint32_t v = mesh_.triangles[k]; std::exchange(seen_[v], round_) != round_) waiting_.push_back(v);
+  }
+  const engine::Mesh& mesh_;
+  std::vector<std::vector<std::uint32_t>> trianglesAt_;
+  std::vector<std::uint32_t> seen_, waiting_, found_;
+  std::uint32_t round_ = 0;
+};
 }  // namespace
 
 ConvexHull::ConvexHull(std::shared_ptr<const engine::Mesh> mesh) : mesh_(std::move(mesh)) {
@@ -25,6 +65,7 @@ ConvexHull::ConvexHull(std::shared_ptr<const engine::Mesh> mesh) : mesh_(std::mo
   }
 
   // The triangles of a plane make one face.
+  PlaneSearch search(m);
   std::vector<std::uint8_t> done(m.triangles.size() / 3, 0);
   for (std::size_t t = 0; t < done.size(); ++t) {
     if (done[t]) continue;
@@ -33,12 +74,14 @@ ConvexHull::ConvexHull(std::shared_ptr<const engine::Mesh> mesh) : mesh_(std::mo
     if (!(across.norm() > 1e-12 * size * size)) continue;  // without area: its neighbours have its corners
     const Vec3 normal = across.normalized();
     const double offset = normal.dot(at(0));
-    addFace(normal, offset, kFlat * size);
-    const auto isIn = [&](std::uint32_t v) { return std::abs(normal.dot(corner(v)) - offset) <= kFlat * size; };
-    for (std::size_t other = t; other < done.size(); ++other)
-      if (!done[other] && isIn(m.triangles[3 * other]) && isIn(m.triangles[3 * other + 1]) &&
-          isIn(m.triangles[3 * other + 2]))
-        done[other] = 1;
+    const auto height = [&](std::uint32_t v) { return normal.dot(corner(v)) - offset; };
+    const auto isIn = [&](std::uint32_t v) { return std::abs(height(v)) <= kFlat * size; };
+    const std::vector<std::uint32_t>& corners = search.find(t, height, kFlat * size);
+    for (const std::uint32_t v : corners)
+      for (const std::uint32_t other : search.trianglesAt(v))
+        if (isIn(m.triangles[3 * other]) && isIn(m.triangles[3 * other + 1]) && isIn(m.triangles[3 * other + 2]))
+          done[other] = 1;
+    addFace(normal, offset, corners);
   }
 }
 
@@ -69,14 +112,10 @@ bool ConvexHull::makeConvex(Face& face) const {
   return false;
 }
 
-void ConvexHull::addFace(const Vec3& normal, double offset, double tolerance) {
-  Face face{normal, offset, {}};
+void ConvexHull::addFace(const Vec3& normal, double offset, const std::vector<std::uint32_t>& corners) {
+  Face face{normal, offset, corners};
   Vec3 middle = Vec3::Zero();
-  for (std::uint32_t i = 0; 3 * i < corners_.size(); ++i) {
-    if (std::abs(normal.dot(corner(i)) - offset) > tolerance) continue;
-    face.corners.push_back(i);
-    middle += corner(i);
-  }
+  for (const std::uint32_t i : corners) middle += corner(i);
   if (face.corners.size() < 3) return;
   middle /= static_cast<double>(face.corners.size());
   const Vec3 x = normal.unitOrthogonal(), y = normal.cross(x);

@@ -37,7 +37,8 @@ class ConvexHull {
   /// Removes corners that do not turn left, and begins with three that turn left seen from the centre too. False: there
   /// are none, as of a face without area.
   bool makeConvex(Face& face) const;
-  void addFace(const Vec3& normal, double offset, double tolerance);
+  /// `corners`: those in the plane, in order of their numbers.
+  void addFace(const Vec3& normal, double offset, const std::vector<std::uint32_t>& corners);
 
   std::shared_ptr<const engine::Mesh> mesh_;  // keeps its address
   Vec3 center_ = Vec3::Zero();
