@@ -29,7 +29,7 @@ void Joint::describe(Description<Joint>& d) {
       .optional(1)
       .doc(
           "Connects two bodies by paths relative to the joint; without a second path, a body with the static world. "
-          "Where the first path is empty, motor and stops of a hinge count against its angle, as in ODE.");
+          "Where the first path is empty, motor and stops of a hinge count against its angle.");
 
   const auto axis = [&](const char* name, auto set, auto get, const char* unit, const char* doc) {
     const std::string value = *unit ? fmt::format("value [{}]", unit) : "value";
