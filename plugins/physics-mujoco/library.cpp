@@ -25,6 +25,24 @@ void onStage(const mjModel* m, mjData*) {
   if (session && session->model == m && session->stage) session->stage(session->context);
 }
 
+/// MuJoCo's functions of collision with a mesh, by the type of the other geom.
+mjfCollision withMesh[mjNGEOMTYPES] = {};
+
+int collideMesh(const mjModel* m, const mjData* d, mjContact* out, int geom1, int geom2, mjtNum margin) {
+  if (session && session->model == m && session->pieces)
+    if (const int count = session->pieces->find(m, d, out, geom1, geom2, margin); count >= 0) return count;
+  return withMesh[m->geom_type[geom1]](m, d, out, geom1, geom2, margin);
+}
+
+/// Exchanges MuJoCo's functions and this one.
+void installCollision(bool on) {
+  for (const int type : {mjGEOM_SPHERE, mjGEOM_CAPSULE, mjGEOM_ELLIPSOID, mjGEOM_CYLINDER, mjGEOM_BOX, mjGEOM_MESH}) {
+    mjfCollision& function = mjCOLLISIONFUNC[type][mjGEOM_MESH];
+    if (on) withMesh[type] = function;
+    function = on ? collideMesh : withMesh[type];
+  }
+}
+
 void onWarning(const char* text) {
   if (session) *session->text = text;
 }
@@ -41,6 +59,7 @@ LibraryGuard::LibraryGuard() {
   mju_user_error = [](const char* text) { throw Error(std::string("MuJoCo: ") + text); };
   mjcb_contactfilter = discard;
   mjcb_control = onStage;
+  installCollision(true);
 }
 
 LibraryGuard::~LibraryGuard() {
@@ -50,10 +69,11 @@ LibraryGuard::~LibraryGuard() {
   mju_user_error = nullptr;
   mjcb_contactfilter = nullptr;
   mjcb_control = nullptr;
+  installCollision(false);
 }
 
-Session::Session(std::string& to, const mjModel* m, Filter f, void* c, Stage s)
-    : text(&to), model(m), filter(f), context(c), stage(s), outer_(session) {
+Session::Session(std::string& to, const mjModel* m, Filter f, void* c, Stage s, PieceContacts* p)
+    : text(&to), model(m), filter(f), context(c), stage(s), pieces(p), outer_(session) {
   session = this;
 }
 

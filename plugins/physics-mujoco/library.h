@@ -8,6 +8,8 @@
 #include <memory>
 #include <string>
 
+#include "piece_contacts.h"
+
 namespace spark::mujoco {
 
 struct Deleter {
@@ -37,7 +39,9 @@ class Session {
   using Filter = bool (*)(void* context, int geom1, int geom2);
   /// Called in each further stage of the integrator, when its positions and velocities are known: it sets forces.
   using Stage = void (*)(void* context);
-  Session(std::string& text, const mjModel* model, Filter filter, void* context, Stage stage = nullptr);
+  /// `pieces`: finds the contacts of meshes where it can; nullptr: MuJoCo finds all.
+  Session(std::string& text, const mjModel* model, Filter filter, void* context, Stage stage = nullptr,
+          PieceContacts* pieces = nullptr);
   ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
@@ -48,6 +52,7 @@ class Session {
   Filter filter;
   void* context;
   Stage stage;
+  PieceContacts* pieces;
 
  private:
   Session* outer_;

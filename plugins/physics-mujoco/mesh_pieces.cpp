@@ -82,7 +82,7 @@ class Surface {
     if (out.size() + hollow.size() > kMostPieces) return {};
     const bool many = hollow.size() * triangles_.size() * 4 > kMostRays;
     for (const Loop& polygon : hollow) {
-      const double thickness = many ? kThinnest : depthBehind(polygon);
+      const double thickness = many || isCovered(polygon) ? kThinnest : depthBehind(polygon);
       if (thickness * acrossAll(polygon).norm() / 2 > kLeastVolume) out.push_back(plate(polygon, thickness));
     }
     return out;
@@ -179,6 +179,20 @@ class Surface {
     return turn > 1e-9 || (turn > -1e-9 && in.dot(out) > 0);
   }
 
+  /// True if triangles that look at the other side lie on a polygon, at its middle.
+  bool isCovered(const Loop& polygon) const {
+    const Vec3 normal = normalOf(polygon);
+    Vec3 middle = Vec3::Zero();
+    for (const Index i : polygon) middle += at(i) / static_cast<double>(polygon.size());
+    return std::any_of(triangles_.begin(), triangles_.end(), [&](const Loop& t) {
+      if (across(t).normalized().dot(normal) > kFlat - 1) return false;
+      if (std::abs(normal.dot(at(t[0]) - middle)) > kFlat * size_) return false;
+      for (std::size_t k = 0; k < 3; ++k)
+        if (normal.dot((at(t[(k + 1) % 3]) - at(t[k])).cross(middle - at(t[k]))) > kFlat * size_ * size_) return false;
+      return true;
+    });
+  }
+
   /// How far the solid reaches behind a polygon, from its middle and the middles between that and its corners.
   double depthBehind(const Loop& polygon) const {
     const Vec3 along = -normalOf(polygon);
@@ -221,6 +235,19 @@ class Surface {
 }  // namespace
 
 std::vector<Piece> piecesOf(const engine::Mesh& mesh) { return Surface(mesh).pieces(); }
+
+Vec3 MeshPieces::frontOf(const engine::Geom& geom, std::size_t piece) const {
+  const auto found = all_.find(geom.shape.mesh.get());
+  if (found == all_.end() || piece >= found->second->pieces.size()) return Vec3::Zero();
+  // A plate has the corners of its front, and then the same behind.
+  const Piece& p = found->second->pieces[piece];
+  if (p.size() % 6 != 0) return Vec3::Zero();
+  const std::size_t half = p.size() / 2;
+  const auto shift = [&](std::size_t i) { return Vec3(Vec3::Map(&p[i]) - Vec3::Map(&p[half + i])); };
+  for (std::size_t i = 3; i < half; i += 3)
+    if ((shift(i) - shift(0)).norm() > 1e-6 * kThickness) return Vec3::Zero();
+  return shift(0).norm() > 1.001 * kThickness ? Vec3(Vec3::Zero()) : shift(0).normalized();
+}
 
 void MeshPieces::update(const engine::Model& model) {
   std::unordered_map<const engine::Mesh*, std::shared_ptr<const Entry>> now;

@@ -33,6 +33,8 @@ class MeshPieces {
   void update(const engine::Model& model);
   /// That of a geom with Shape::mesh.
   const Entry& of(const engine::Geom& geom) const { return *all_.at(geom.shape.mesh.get()); }
+  /// The direction in which a piece of such a geom looks, if it is a plate; zero: it is a solid.
+  Vec3 frontOf(const engine::Geom& geom, std::size_t piece) const;
 
  private:
   std::unordered_map<const engine::Mesh*, std::shared_ptr<const Entry>> all_;  // never iterated

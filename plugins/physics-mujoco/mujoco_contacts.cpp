@@ -31,7 +31,7 @@ bool MujocoWorld::mayTouch(void* world, int geom1, int geom2) {
 
 void MujocoWorld::prepare(const Model& model) {
   model_ = &model;
-  const Session session(message_, m_.get(), mayTouch, this);
+  const Session session(message_, m_.get(), mayTouch, this, nullptr, &pieceContacts_);
   mj_step1(m_.get(), d_.get());
   prepared_ = true;
   findSpare();

@@ -154,7 +154,7 @@ void MujocoSolver::reportStiff(const engine::Model& model) {
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
   // The system takes back the memory of a large world in milliseconds: in another thread.
-  auto world = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled));
+  auto world = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled), pieces_);
   if (world_) world->takeActivations(*world_);
   if (world_) ending_ = std::async(std::launch::async, [old = std::move(world_)]() mutable { old.reset(); });
   world_ = std::move(world);

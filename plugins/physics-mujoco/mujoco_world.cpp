@@ -75,7 +75,7 @@ void takeHeights(mjModel& m, int geom, const engine::ShapeDescription& shape) {
 }
 }  // namespace
 
-MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
+MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled, const MeshPieces& pieces)
     : trees_(std::move(trees)), m_(std::move(compiled.model)), d_(std::move(compiled.data)) {
   placeConstraints(model, *m_);
   linkOrigins_.resize(static_cast<std::size_t>(m_->nbody), Vec3::Zero());
@@ -133,6 +133,7 @@ MujocoWorld::MujocoWorld(const Model& model, Trees trees, Compiled compiled)
       const int geom = id(compiled.geoms, pieceName(i, piece));
       if (geom < 0) break;
       geoms_[geom] = model.geoms[i].id;
+      pieceContacts_.add(*m_, geom, model.geoms[i].offset.rotation * pieces.frontOf(model.geoms[i], piece));
     }
   }
 
@@ -395,7 +396,7 @@ bool MujocoWorld::run(engine::Step& step) {
   findUnsolved(step.contacts);
   model_ = &step.model, state_ = &step.state;
   const bool stages = m_->opt.integrator == mjINT_RK4;
-  const Session session(message_, m_.get(), mayTouch, this, stages ? onStage : nullptr);
+  const Session session(message_, m_.get(), mayTouch, this, stages ? onStage : nullptr, &pieceContacts_);
   passInputs(step.state);
   act();
   if (stages) {

@@ -31,8 +31,8 @@ Compiled compileWorld(const std::string& mjcf, bool ahead = false);
 
 class MujocoWorld {
  public:
-  /// `trees` and `compiled` are those of toMjcf() for this model.
-  MujocoWorld(const engine::Model& model, Trees trees, Compiled compiled);
+  /// `trees`, `compiled` and `pieces` are those of toMjcf() for this model.
+  MujocoWorld(const engine::Model& model, Trees trees, Compiled compiled, const MeshPieces& pieces);
   /// Which pairs of geoms may collide until the next detect().
   void setFilter(engine::PairFilter filter) { filter_ = filter; }
   /// Goes on with another model, of which only those trees move that are unchanged: until it is compiled.
@@ -177,6 +177,7 @@ class MujocoWorld {
   std::vector<Use> spare_;                              ///< by MuJoCo's contact; empty: all are reported
   std::vector<std::pair<std::uint64_t, int>> pairs_;    ///< of findSpare(): pair of geoms, contact
   std::vector<double> apart_;     ///< of thinOut(): squared distance from the chosen ones; -1: is one
+  PieceContacts pieceContacts_;   ///< of static meshes
   std::vector<Wrench> wrenches_;  ///< of applyForces(), by MuJoCo's body
   // Of applyLaws(), by degree of freedom: the force per velocity after the step, and what mobilityOf() works with.
   std::vector<double> resistances_, mobilities_;
