@@ -1,7 +1,7 @@
 -- row: 7
 -- input: barrels that stand, lie, roll on and fall onto a yard of triangles, of one side and of two, with a wall
 -- right: they stay where they are, or roll on straight; nothing is thrown
--- engines: OdeEngine ArticulatedEngine BulletEngine
+-- engines: all
 -- args: --duration 3.2
 include "../lib/judge.lua"
 include "../lib/mesh.lua"
