@@ -40,7 +40,8 @@ for sides = 1, 2 do
     local body = barrel(what .. sides, x, y + (rolls and -0.7 or 0.3), z, lies)
     if rolls then body.velocity, body.angularVelocity = { 1.5, 0, 0 }, { 0, 10, 0 } end
     barrels[#barrels + 1] =
-      { what = what .. ", " .. sides .. " sides", body = body, x = rolls and x + 1.5 * 3 or x, lies = lies, rolls = rolls }
+      { what = what .. ", " .. sides .. " sides", body = body, x = rolls and x + 1.5 * 3 or x, lies = lies,
+        rolls = rolls }
   end
   add("standing", 1.2, 0.2)
   add("lying", -2.1, 0.1499, true)
