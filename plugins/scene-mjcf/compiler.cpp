@@ -6,6 +6,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "robot/mended_numbers.h"
+
 namespace spark::mjcf {
 
 namespace {
@@ -101,7 +103,12 @@ std::optional<Mat3> Compiler::orientation(Attributes& a) const {
 Pose Compiler::pose(Attributes& a, const Pose& frame) const {
   Pose p;
   a.take("pos", p.position);
-  if (!(p.position.cwiseAbs().maxCoeff() <= 1e6)) throw a.element().error("expected a place at most 1e6 m away");
+  if (!(p.position.cwiseAbs().maxCoeff() <= kPlaces.most)) {
+    const std::string expected = fmt::format("expected a place at most {:g} m away", kPlaces.most);
+    if (!a.isForgiving()) throw a.element().error(expected);
+    a.note(fmt::format("'pos' of <{}> is ignored: {}", a.element().tag(), expected));
+    p.position.setZero();
+  }
   if (const auto r = orientation(a)) p.rotation = *r;
   return compose(frame, p);
 }

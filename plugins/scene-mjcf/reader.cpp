@@ -9,6 +9,7 @@
 #include "api/mass.h"
 #include "option_reader.h"
 #include "robot/mended_mass.h"
+#include "robot/mended_numbers.h"
 #include "spring_damper.h"
 #include "vocabulary.h"
 
@@ -61,6 +62,7 @@ Model Reader::read() {
       unsupported_.element(e);
   model_.surfaces = meshes_.surfaces();
   chooseCollisions();
+  mendNumbers(model_, unsupported_);
   nameUnknown(document_, unsupported_);
   return std::move(model_);
 }
@@ -113,6 +115,7 @@ Attributes Reader::attributes(const Element& e, const std::string& childClass) {
 
 void Reader::option(const Element& e) {
   Attributes a = attributes(e);
+  a.forgive();
   readOption(a, model_, unsupported_);
   for (const Element& child : document_.children(e)) {
     if (child.tag() != "flag") {
@@ -166,6 +169,7 @@ void Reader::content(const Element& parent, const Scope& scope) {
 void Reader::body(const Element& e, const Scope& scope) {
   if (model_.bodies.size() > kMaxBodies) throw e.error(fmt::format("expected at most {} bodies", kMaxBodies));
   Attributes a = attributes(e, scope.childClass);
+  a.forgive();
   Body b;
   b.from = e;
   b.name = a.text("name");
@@ -193,6 +197,7 @@ void Reader::body(const Element& e, const Scope& scope) {
 
 void Reader::frame(const Element& e, Scope scope) {
   Attributes a = attributes(e, scope.childClass);
+  a.forgive();
   scope.frame = compiler_.pose(a, scope.frame);
   scope.childClass = a.text("childclass", scope.childClass.c_str());
   ++scope.depth;
@@ -226,6 +231,7 @@ void Reader::inertial(const Element& e, const Scope& scope) {
   b.mass = m;
   b.inertiaAxes = scope.frame.rotation * turn;
   b.hasInertial = true;
+  if (!(m.mass > 0)) b.lacksMass = true;
   a.finish();
 }
 
@@ -252,6 +258,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   Joint j;
   j.from = e;
   Attributes a = attributes(e, scope.childClass);
+  a.forgive();
   j.name = a.text("name");
   const std::string kind = a.word("type", {"free", "ball", "slide", "hinge"}, "hinge");
   j.kind = kind == "free"    ? JointKind::free
@@ -263,12 +270,20 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   a.take("pos", j.position);
   a.take("axis", j.axis);
   j.position = scope.frame.position + scope.frame.rotation * j.position;
-  if (!(j.axis.norm() > 1e-10)) throw e.error("expected an axis that is not 0");
-  j.axis = scope.frame.rotation * j.axis.normalized();
+  if (!(j.axis.stableNorm() > 1e-10)) {
+    a.note("an 'axis' of 0 in <joint> is taken as '0 0 1'");
+    j.axis = Vec3::UnitZ();
+  }
+  // Of a length whose square is no number, too.
+  const double length = j.axis.norm();
+  j.axis = scope.frame.rotation * (std::isfinite(length) ? j.axis.normalized() : j.axis.stableNormalized());
   j.reference = inUnits(a.number("ref", 0));
   Limit limit, force;
   limit.read(a, "limited", "range");
   force.read(a, "actuatorfrclimited", "actuatorfrcrange");
+  // One that cannot be read is none.
+  if (!limit.range && a.has("range")) limit.word = "false";
+  if (!force.range && a.has("actuatorfrcrange")) force.word = "false";
   const bool ball = j.kind == JointKind::ball;
   if (j.kind == JointKind::free) {
     a.ignore({"pos", "axis", "range", "limited", "ref", "springref"});
@@ -322,6 +337,7 @@ void Reader::geom(const Element& e, const Scope& scope) {
     g = geoms_.read(a, b, scope.frame);
   });
   if (!g || !g->isShape) model_.unsupportedGeoms.insert(e.node.attribute("name").value());
+  if (g) dropBadMass(*g, unsupported_);
   if (g) b.geoms.push_back(std::move(*g));
 }
 

@@ -9,6 +9,7 @@
 #include "gazebo_reader.h"
 #include "geometry_reader.h"
 #include "robot/mended_mass.h"
+#include "robot/mended_numbers.h"
 #include "vocabulary.h"
 
 namespace spark::urdf {
@@ -77,6 +78,7 @@ mjcf::Model Reader::read() {
   model_.surfaces = geometry_.surfaces();
   mjcf::weighLightBodies(model_, "a <link>", unsupported_);  // links that only connect joints often have none
   GazeboReader(root_, model_, unsupported_).apply();
+  mjcf::mendNumbers(model_, unsupported_);
   AgentParts(root_, model_, unsupported_).add();
   return std::move(model_);
 }
@@ -260,7 +262,7 @@ void Reader::inertial(const Element& link, mjcf::Body& body) {
     const double xy = a.number("ixy", 0), xz = a.number("ixz", 0), yz = a.number("iyz", 0);
     mass.inertia << a.number("ixx", 0), xy, xz, xy, a.number("iyy", 0), yz, xz, yz, a.number("izz", 0);
   }
-  if (mass.mass > 0) mjcf::mendInertia(mass, *e, "an <inertial>", unsupported_);
+  if (mass.mass > 0 && mass.mass <= mjcf::kMasses.most) mjcf::mendInertia(mass, *e, "an <inertial>", unsupported_);
   mass.inertia = at.rotation * mass.inertia * at.rotation.transpose();
   body.mass = mass;
 }
@@ -298,7 +300,8 @@ void Reader::joints(const JointElement& j, mjcf::Body& body) {
       axis = Vec3::UnitX();
     }
   }
-  axis.normalize();
+  // Of a length whose square is no number, too.
+  axis = std::isfinite(axis.norm()) ? axis.normalized() : axis.stableNormalized();
   if (j.type == "planar") {
     for (const char* const tag : {"limit", "mimic", "dynamics"})
       if (const auto e = childOf(j.from, tag))

@@ -8,6 +8,7 @@
 #include "base_nodes.h"
 #include "meshes/hull.h"
 #include "meshes/kept_hulls.h"
+#include "robot/mended_numbers.h"
 
 namespace spark::webots {
 
@@ -47,6 +48,7 @@ void GeometryReader::shape(const Node& node, const Frame& frame, mjcf::Body& bod
     auto shape = this->geometry(*geometry, standing, false);
     if (!shape) return;
     g.shape = std::move(*shape);
+    mjcf::dropBadMass(g, r_.unsupported);
     body.geoms.push_back(std::move(g));
   });
 }

@@ -6,12 +6,9 @@
 #include <cmath>
 
 #include "base_nodes.h"
+#include "robot/mended_numbers.h"
 
 namespace spark::webots {
-
-namespace {
-constexpr double kFarthest = 1e9;  ///< m: as Transform::kMaxMagnitude
-}
 
 std::string UniqueNames::add(const std::string& name) {
   if (taken_.insert(name).second) return name;
@@ -43,8 +40,14 @@ Frame frameIn(const Frame& around, Fields& f) {
             "a rotation in a frame that is scaled differently in its directions is not supported: what is in "
             "it is not sheared");
   out.scale = around.scale.cwiseProduct(scale);
-  if (!(out.pose.position.cwiseAbs().maxCoeff() <= kFarthest) || !(out.scale.cwiseAbs().maxCoeff() <= kFarthest))
-    throw f.element().error(fmt::format("expected lengths of at most {:g} m", kFarthest));
+  if (!(out.pose.position.cwiseAbs().maxCoeff() <= mjcf::kPlaces.most)) {
+    f.wrong("translation", fmt::format("expected a place at most {:g} m away; 0 0 0 is taken", mjcf::kPlaces.most));
+    out.pose.position = around.pose.position;
+  }
+  if (!(out.scale.cwiseAbs().maxCoeff() <= mjcf::kPlaces.most)) {
+    f.wrong("scale", fmt::format("expected a scale of at most {:g}; 1 is taken", mjcf::kPlaces.most));
+    out.scale = around.scale;
+  }
   return out;
 }
 

@@ -9,6 +9,7 @@
 #include "known_protos.h"
 #include "model_reader.h"
 #include "robot/mended_mass.h"
+#include "robot/mended_numbers.h"
 
 namespace spark::webots {
 
@@ -73,6 +74,7 @@ World Reader::read() {
   if (world_.models.empty()) return std::move(world_);
   for (mjcf::Model& model : world_.models) {
     dropMovingPlanes(model, r_.unsupported);
+    mjcf::mendNumbers(model, r_.unsupported);
     mjcf::weighLightBodies(model, "a solid", r_.unsupported);
     model.surfaces = geometry_.surfaces();
   }

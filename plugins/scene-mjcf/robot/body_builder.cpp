@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "mended_numbers.h"
 #include "spark/access.h"
 
 namespace spark::mjcf {
@@ -84,6 +85,7 @@ void BodyBuilder::build() {
 void BodyBuilder::makeBody(PlacedBody& p) {
   const Body& b = *p.body;
   if (!(p.mass.mass > 0)) throw b.from.error("a body that moves needs a mass above 0");
+  mendSum(p);
   p.node = &transformAt(c_.names.body(c_.top, b.name, "body"), bodyPose(p));
   try {
     Leaf& body = makeRigidBody(*p.node, p, 1);
@@ -93,6 +95,17 @@ void BodyBuilder::makeBody(PlacedBody& p) {
     compensateGravity(p, body);
   } catch (const Error& e) {
     throw Error(fmt::format("{}: cannot make the body '{}'", b.from.where(), b.name), e);
+  }
+}
+
+/// Of a body with all that is fixed to it.
+void BodyBuilder::mendSum(PlacedBody& p) {
+  if (isUsable(p.mass)) return;
+  const double before = p.mass.mass;
+  mendMass(p.mass, p.body->from, c_.unsupported);
+  for (engine::Part& part : p.parts) {
+    part.mass *= p.mass.mass / before;
+    part.inertia = part.mass / p.mass.mass * p.mass.inertia;
   }
 }
 

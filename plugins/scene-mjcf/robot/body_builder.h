@@ -15,6 +15,7 @@ class BodyBuilder {
 
  private:
   void makeBody(PlacedBody& b);
+  void mendSum(PlacedBody& p);
   void compensateGravity(const PlacedBody& b, Leaf& body);
   void makeJoints(const PlacedBody& b);
   /// What MuJoCo alone has of a ball or a free joint. `of`: path of its node from the transform's parent.

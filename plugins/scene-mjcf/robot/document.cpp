@@ -252,11 +252,15 @@ std::optional<std::vector<double>> Attributes::parse(const Element& e, const cha
   if (!attribute) return std::nullopt;
   const std::string_view text(attribute.value());
   std::vector<double> out;
-  const auto refuse = [&] {
-    throw e.error(fmt::format("expected {} for '{}' of <{}>, found '{}'",
-                              least == most ? (most == 1 ? "a number" : fmt::format("{} numbers", most))
-                                            : fmt::format("{} to {} numbers", least, most),
-                              name, e.tag(), text.substr(0, 80)));
+  const auto refuse = [&]() -> std::optional<std::vector<double>> {
+    const std::string expected = least == most ? (most == 1 ? "a number" : fmt::format("{} numbers", most))
+                                               : fmt::format("{} to {} numbers", least, most);
+    const std::string_view found = text.substr(0, 80);
+    if (!forgiving_)
+      throw e.error(fmt::format("expected {} for '{}' of <{}>, found '{}'", expected, name, e.tag(), found));
+    unsupported_.add(
+        e, fmt::format("'{}' of <{}> is ignored: expected {}, found '{}'", name, element_.tag(), expected, found));
+    return std::nullopt;
   };
   std::size_t at = 0;
   while (true) {
@@ -268,12 +272,12 @@ std::optional<std::vector<double>> Attributes::parse(const Element& e, const cha
     // What is next to 0 is 0.
     if (failure == std::errc::result_out_of_range) v = std::strtod(text.data() + at, nullptr);
     const bool isNumber = failure == std::errc() || failure == std::errc::result_out_of_range;
-    if (!isNumber || !std::isfinite(v) || out.size() == most) refuse();
+    if (!isNumber || !std::isfinite(v) || out.size() == most) return refuse();
     at = static_cast<std::size_t>(end - text.data());
-    if (at < text.size() && !std::strchr(" \t\r\n", text[at])) refuse();
+    if (at < text.size() && !std::strchr(" \t\r\n", text[at])) return refuse();
     out.push_back(v);
   }
-  if (out.size() < least) refuse();
+  if (out.size() < least) return refuse();
   return out;
 }
 

@@ -138,6 +138,12 @@ class Attributes {
              std::string_view tag = "");
   /// Of the element alone.
   Attributes(const Element& e, Unsupported& unsupported) : element_(e), chain_{e}, unsupported_(unsupported) {}
+  /// From now on numbers that cannot be read count as not given, which is named; otherwise they are an error.
+  Attributes& forgive() {
+    forgiving_ = true;
+    return *this;
+  }
+  bool isForgiving() const { return forgiving_; }
   const Element& element() const { return element_; }
   bool has(const char* name) { return find(name) != nullptr; }
   /// "" where it is not there.
@@ -186,6 +192,7 @@ class Attributes {
   Element element_;
   std::vector<Element> chain_;  ///< the element, then its defaults
   Unsupported& unsupported_;
+  bool forgiving_ = false;
   std::set<std::string, std::less<>> known_{"class"};
 };
 

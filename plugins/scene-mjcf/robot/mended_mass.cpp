@@ -20,6 +20,8 @@ constexpr double kLeastRadius = 1e-5;   // m, of gyration
 constexpr double kLeastMoment = 1e-14;  // kg m^2
 }  // namespace
 
+engine::Mass sphereOfWater(double mass) { return physics::sphereMass(mass, std::cbrt(0.75 * mass / (kWater * M_PI))); }
+
 void balanceInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported) {
   const Vec3 moments = Eigen::SelfAdjointEigenSolver<Mat3>(mass.inertia, Eigen::EigenvaluesOnly).eigenvalues();
   if (moments.x() + moments.y() >= moments.z() * (1 - 1e-9)) return;
@@ -32,7 +34,7 @@ void mendInertia(engine::Mass& mass, const Element& from, const std::string& wha
   const double least = std::max({kLeastMoment, kLeastRatio * moments.z(), kLeastRadius * kLeastRadius * mass.mass});
   if (!(moments.x() > least)) {
     unsupported.add(from, what + " with moments of inertia that are not above 0 gets those of a sphere of water");
-    mass.inertia = physics::sphereMass(mass.mass, std::cbrt(0.75 * mass.mass / (kWater * M_PI))).inertia;
+    mass.inertia = sphereOfWater(mass.mass).inertia;
   } else {
     balanceInertia(mass, from, what, unsupported);
   }

@@ -8,6 +8,9 @@
 
 namespace spark::mjcf {
 
+/// A sphere of water of that mass [kg].
+engine::Mass sphereOfWater(double mass);
+
 /// Moments of inertia that are not above 0, but for rounding, become those of a sphere of water of that mass; those
 /// that no body can have become their mean about each axis. Both are named in `unsupported`. `what`: the element, "an
 /// <inertial>". `mass`: above 0.

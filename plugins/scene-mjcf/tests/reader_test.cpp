@@ -100,10 +100,6 @@ TEST_CASE("errors have the position, what was expected, and what was found") {
       {"<mujoco><worldbody><body></worldbody></mujoco>", "a.xml:1:28: this is not XML: "},
       {"<robot/>", "a.xml:1:1: expected the element <mujoco>, found <robot>"},
       {"", "a.xml:1:1: this is not XML: No document element found"},
-      {"<mujoco><worldbody><body pos='1 2'/></worldbody></mujoco>",
-       "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2'"},
-      {"<mujoco><worldbody><body pos='1 2 nan'/></worldbody></mujoco>",
-       "a.xml:1:20: expected 3 numbers for 'pos' of <body>, found '1 2 nan'"},
       {"<mujoco><worldbody><joint/></worldbody></mujoco>", "a.xml:1:20: the world has no joints"},
       {"<mujoco><compiler eulerseq='xy'/></mujoco>",
        "a.xml:1:9: expected three of x y z X Y Z for 'eulerseq', found 'xy'"},
@@ -111,6 +107,31 @@ TEST_CASE("errors have the position, what was expected, and what was found") {
        "a.xml:1:46: expected an 'eulerseq' of x y z X Y Z in <compiler>, found 'xyw'"},
   };
   for (const auto& [text, message] : cases) CHECK_THAT(failure(text), Catch::StartsWith(message));
+}
+
+TEST_CASE("a number that cannot be read, or with which no engine computes, costs itself, and is named") {
+  const std::pair<const char*, const char*> cases[] = {
+      {"<body pos='1 2'/>", "a.xml:1:20: 'pos' of <body> is ignored: expected 3 numbers, found '1 2'"},
+      {"<body pos='1 2 nan'/>", "a.xml:1:20: 'pos' of <body> is ignored: expected 3 numbers, found '1 2 nan'"},
+      {"<body pos='1e300 0 0'/>", "'pos' of <body> is ignored: expected a place at most 1e+06 m away"},
+      {"<body><joint damping='x'/><geom size='1'/></body>",
+       "a.xml:1:26: 'damping' of <joint> is ignored: expected a number, found 'x'"},
+      {"<body><joint range='0 inf' limited='true'/><geom size='1'/></body>",
+       "'range' of <joint> is ignored: expected 2 numbers, found '0 inf'"},
+      {"<body><joint axis='0 0 0'/><geom size='1'/></body>", "an 'axis' of 0 in <joint> is taken as '0 0 1'"},
+      {"<body><joint stiffness='1e300'/><geom size='1'/></body>", "<joint>, a stiffness of 1e+300 is taken as 1e+12"},
+      {"<body><joint/><inertial pos='0 0 0' mass='1e300' diaginertia='1 1 1'/></body>",
+       "<body>, a mass of 1e+300 is taken as 1e+15"},
+      {"<body><joint/><inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/></body>",
+       "a <body> that moves and has no mass gets 10 g"},
+      {"<body><joint/><geom size='1'/><geom size='1e8'/></body>", "<geom> has no mass: expected at most 1e+15 kg"},
+  };
+  for (const auto& [content, message] : cases) {
+    const std::string messages = named(world(content));
+    INFO(content << messages);
+    CHECK(messages.find(message) != std::string::npos);
+  }
+  CHECK(Read(world("<body><joint axis='0 1e308 0'/><geom size='1'/></body>")).body(1).joints[0].axis.y() == 1);
 }
 
 TEST_CASE("a value that MuJoCo takes does not cost the model; what is made of it is named") {
