@@ -216,3 +216,26 @@ TEST_CASE("The state of a chain is saved and restored, percepts under way includ
     REQUIRE(stateHash(*one.sensor) == stateHash(*other.sensor));
   }
 }
+
+TEST_CASE("A state with another number of percepts under way than it counts is refused") {
+  Bench one;
+  one.add("Delay", {{"cycles", 3}});
+  one.sense(5);
+  StateWriter saved(true);
+  saveTree(*one.sensor, saved);
+  std::string refused;
+  for (std::size_t at = 0; at + 8 <= saved.bytes().size(); at += 8) {
+    std::string bytes(saved.bytes());
+    if (bytes.substr(at, 8) != std::string("\1\0\0\0\0\0\0\0", 8)) continue;
+    bytes[at] = 2;
+    Bench other;
+    other.add("Delay", {{"cycles", 3}});
+    try {
+      StateReader in(bytes);
+      loadTree(*other.sensor, in);
+    } catch (const std::exception& e) {
+      refused += e.what();
+    }
+  }
+  CHECK_THAT(refused, Catch::Contains("expected the 2 lists of a delay, found 1"));
+}
