@@ -249,6 +249,26 @@ Vec3 MeshPieces::frontOf(const engine::Geom& geom, std::size_t piece) const {
   return shift(0).norm() > 1.001 * kThickness ? Vec3(Vec3::Zero()) : shift(0).normalized();
 }
 
+namespace {
+
+/// A mesh whose extent is less than 0.1 mm, which contacts give way by, enlarged to that about its middle; otherwise
+/// itself.
+std::shared_ptr<const engine::Mesh> enlarged(const std::shared_ptr<const engine::Mesh>& mesh) {
+  constexpr double kLeastExtent = 1e-4;  // m
+  using Points = Eigen::Matrix3Xd;
+  const Eigen::Map<const Points> points(mesh->vertices.data(), 3, static_cast<Eigen::Index>(mesh->vertices.size() / 3));
+  const Vec3 low = points.rowwise().minCoeff(), high = points.rowwise().maxCoeff();
+  const double extent = (high - low).maxCoeff();
+  if (!(extent > 0 && extent < kLeastExtent)) return mesh;
+  auto out = std::make_shared<engine::Mesh>(*mesh);
+  const Vec3 middle = (low + high) / 2;
+  Eigen::Map<Points> larger(out->vertices.data(), 3, points.cols());
+  larger = ((points.colwise() - middle) * (kLeastExtent / extent)).colwise() + middle;
+  return out;
+}
+
+}  // namespace
+
 void MeshPieces::update(const engine::Model& model) {
   std::unordered_map<const engine::Mesh*, std::shared_ptr<const Entry>> now;
   for (const engine::Geom& g : model.geoms) {
@@ -259,9 +279,10 @@ void MeshPieces::update(const engine::Model& model) {
     }
     auto made = std::make_shared<Entry>();
     made->mesh = g.shape.mesh;
-    made->pieces = piecesOf(*g.shape.mesh);
+    made->written = enlarged(g.shape.mesh);
+    made->pieces = piecesOf(*made->written);
     try {
-      meshes::hullOf(g.shape.mesh->vertices);
+      meshes::hullOf(made->written->vertices);
     } catch (const Error&) {
       made->isSolid = false;
     }

@@ -26,8 +26,10 @@ class MeshPieces {
  public:
   struct Entry {
     std::shared_ptr<const engine::Mesh> mesh;  ///< keeps its address
-    std::vector<Piece> pieces;                 ///< where it does not move; empty: its hull
-    bool isSolid = true;                       ///< its hull has a volume
+    /// The mesh that is written: itself, or a smaller one of 0.1 mm, of which MuJoCo can make a hull.
+    std::shared_ptr<const engine::Mesh> written;
+    std::vector<Piece> pieces;  ///< where it does not move; empty: its hull
+    bool isSolid = true;        ///< its hull has a volume
   };
   /// Makes what the meshes of the model lack, and drops the others.
   void update(const engine::Model& model);

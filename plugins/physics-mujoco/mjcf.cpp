@@ -139,6 +139,7 @@ struct Writer {
   const engine::Mesh* meshFor(Index index) const {
     const auto own = model.extensions.geoms[index].get<MeshNumbers>();
     const engine::ShapeDescription& s = model.geoms[index].shape;
+    if (s.shape == Shape::mesh) return pieces.of(model.geoms[index]).written.get();
     return s.shape == Shape::convex && own.mesh ? own.mesh : s.mesh.get();
   }
   /// The pieces of a geom that is a static mesh; empty: it is none, or has its hull.
@@ -157,7 +158,7 @@ struct Writer {
     const std::size_t count = piecesFor(index).size();
     if (count == 0) return putGeom(index, geomName(index), "");
     for (std::size_t k = 0; k < count; ++k)
-      putGeom(index, pieceName(index, k), fmt::format("m{}p{}", piecesIn.at(model.geoms[index].shape.mesh.get()), k));
+      putGeom(index, pieceName(index, k), fmt::format("m{}p{}", piecesIn.at(meshFor(index)), k));
   }
   /// `mesh`: the name of that of a piece.
   void putGeom(Index index, const std::string& name, const std::string& mesh) {

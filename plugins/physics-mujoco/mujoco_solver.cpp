@@ -100,21 +100,33 @@ void MujocoSolver::compile(const engine::Model& model, const engine::State& stat
 
 void MujocoSolver::takeMeshes(const engine::Model& model) {
   pieces_.update(model);
-  const auto say = [&](bool& said, const engine::Geom& g, const char* what) {
-    if (!std::exchange(said, true))
-      engine_.kernel().log().warning("{}: a mesh of {} triangles {}", engine_.path(),
-                                     g.shape.mesh->triangles.size() / 3, what);
-  };
+  struct Kind {
+    const engine::Geom* first = nullptr;
+    int count = 0;
+    void add(const engine::Geom& g) {
+      if (count++ == 0) first = &g;
+    }
+  } flat, hulls;
+  const std::uint64_t before = newestGeom_;
+  for (const engine::Geom& g : model.geoms) newestGeom_ = std::max(newestGeom_, g.id);
   for (const engine::Geom& g : model.geoms) {
-    if (g.shape.shape != engine::Shape::mesh) continue;
+    if (g.shape.shape != engine::Shape::mesh || g.id <= before) continue;
     const MeshPieces::Entry& made = pieces_.of(g);
     const bool hasPieces = g.body == kNone && !made.pieces.empty();
-    if (!hasPieces && !made.isSolid) say(saidFlat_, g, "is flat, and on a body does not collide in MuJoCo");
-    if (g.body == kNone && !hasPieces && made.isSolid)
-      say(saidHull_, g,
-          "that does not move has too many convex pieces: it collides as its convex hull, its hollows are "
-          "filled. Take a HeightFieldCollider, or ConvexColliders");
+    if (!hasPieces && !made.isSolid) flat.add(g);
+    if (g.body == engine::kNone && !hasPieces && made.isSolid) hulls.add(g);
   }
+  const auto say = [&](const Kind& kind, const char* what) {
+    if (kind.count == 0) return;
+    const std::string others = kind.count > 1 ? fmt::format(" (and {} more)", kind.count - 1) : "";
+    engine_.kernel().log().warning("{}{}: a mesh of {} triangles {}",
+                                   pathOf<ICollider>(engine_.kernel().root(), kind.first->id), others,
+                                   kind.first->shape.mesh->triangles.size() / 3, what);
+  };
+  say(flat, "is flat, and on a body does not collide in MuJoCo");
+  say(hulls,
+      "that does not move has too many convex pieces: it collides as its convex hull, its hollows are filled. Take a "
+      "HeightFieldCollider, or ConvexColliders");
 }
 
 void MujocoSolver::build(const engine::Model& model, const engine::State& state) {

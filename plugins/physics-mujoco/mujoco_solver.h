@@ -59,7 +59,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   MeshPieces pieces_;
-  bool saidFlat_ = false, saidHull_ = false, saidStiff_ = false;
+  std::uint64_t newestGeom_ = 0;  ///< identity: the log has its mesh
+  bool saidStiff_ = false;
   Sizes sizes_;
   double step_ = 0.005;       ///< s
   std::vector<int> skipped_;  ///< constraints that the last model leaves out
