@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "absence.h"
 #include "robot_client.h"
 
 using namespace spark;
@@ -21,11 +22,7 @@ TEST_CASE("Invalid actions do not affect the valid ones") {
 TEST_CASE("Each kind of mistake of an agent is logged once, and again for another agent") {
   Arena a;
   Client one = robot(a), two = robot(a);
-  const auto lines = [&](const std::string& text) {
-    int n = 0;
-    for (auto at = a.host.text.find(text); at != std::string::npos; at = a.host.text.find(text, at + 1)) ++n;
-    return n;
-  };
+  const auto lines = [&](const std::string& text) { return count(a.host.text, text); };
   for (int i = 0; i < 20; ++i) {
     for (Client* c : {&one, &two})
       c->send("(he1)(he3 " + std::to_string(i) + ")(he2)x" + std::to_string(i) + " (scene robot)");
@@ -78,9 +75,7 @@ TEST_CASE("The number of log lines about one agent is limited") {
     c.send(message + "(he1 1)");
     actionLog().clear();
     applyActions(a, 1);
-    std::size_t lines = 0;
-    for (std::size_t at = 0; (at = a.host.text.find("predicate bad", at)) != std::string::npos; ++at) ++lines;
-    return lines;
+    return count(a.host.text, "predicate bad");
   };
   const auto pause = [&] {
     for (int i = 0; i < 100; ++i) a.cycle(), c.drain();
@@ -120,11 +115,7 @@ TEST_CASE("An agent that names bad scenes in every cycle is finally refused and 
     c.arrive();
     a.cycle();
   }
-  int lines = 0;
-  for (auto at = a.host.text.find("gets no robot"); at != std::string::npos;
-       at = a.host.text.find("gets no robot", at + 1))
-    ++lines;
-  REQUIRE(lines == 10);
+  REQUIRE(count(a.host.text, "gets no robot") == 10);
   REQUIRE(a.logged("no robot could be built too often"));
 }
 

@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "absence.h"
 #include "frame_text.h"
 #include "recorded_session.h"
 
@@ -45,13 +46,6 @@ struct Session {
     return {};
   }
 };
-
-/// The number of occurrences of `what` in a text.
-int count(const std::string& text, const std::string& what) {
-  int n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
 
 /// The lines of a file.
 std::vector<std::string> linesOf(const std::filesystem::path& file) {
@@ -112,6 +106,16 @@ void skipWithoutReference() {
 }
 
 }  // namespace
+
+TEST_CASE("A message with another number, node or entry differs from the recorded one") {
+  const std::string recorded = "((time 1.50))(RSG 0 1)((nd TRF (SLT 1 0 0.25)) ";
+  CHECK(difference(recorded, recorded, 0) == "");
+  CHECK(difference(recorded, "((time 1.50))(RSG 0 1)((nd TRF (SLT 1 0 0.26)) ", 0.02) == "");
+  for (const char* const other :
+       {"((time 1.50))(RSG 0 1)((nd TRF (SLT 1 0 0.26)) ", "((time 1.50))(RSG 0 1)((nd TRF (SLT 1 0)) ",
+        "((time 1.50))(RSG 0 1)((nd (SLT 1 0 0.25)) ", "((time nan))(RSG 0 1)((nd TRF (SLT 1 0 0.25)) "})
+    CHECK(difference(recorded, other, 1e-5) != "");
+}
 
 TEST_CASE("Sessions of one robot give the recorded messages from the first full one on") {
   skipWithoutReference();

@@ -1,4 +1,5 @@
 // Agents that ask for perceptors and effectors while they run, and rules that refuse.
+#include "absence.h"
 #include "api/agents.h"
 #include "spark/script_server.h"
 #include "stadium.h"
@@ -34,12 +35,12 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 TEST_CASE("An agent asks for a sensor in the middle of a match and gets it") {
   AskingMatch m;
-  CHECK_FALSE(has(m.after("(syn)"), "(GPS "));
-  const std::string heard = m.after("(request (perceptor GPS)(name gps2))");
+  const std::string before = m.after("(syn)"), heard = m.after("(request (perceptor GPS)(name gps2))");
   INFO(heard);
   CHECK(has(heard, "(granted (name gps2))"));
   CHECK(has(heard, "(GPS (n gps2) (tf "));
-  CHECK_FALSE(has(m.after("(syn)"), "(granted"));  // it is told once
+  CHECK(lacks(before, "(GPS ", heard));
+  CHECK(lacks(m.after("(syn)"), "(granted", heard));  // it is told once
   // Below a part of its robot, by name.
   CHECK(has(m.after("(request (perceptor GPS)(name inside)(at body))"), "(GPS (n inside) (tf "));
 }
@@ -68,12 +69,12 @@ TEST_CASE("Requests that cannot be granted are answered with what was expected")
             "expected a file below rsg/agent/, found rsg/soccer/field.rsg"));
   CHECK(has(why("(request (scene rsg/agent/../soccer/field.rsg))"), "expected a file below"));
   CHECK(has(why("(request (scene rsg/agent/nothing.rsg))"), "(why it cannot be made, the log of the host says why"));
-  m.after("(request (perceptor GPS)(name g))");
+  const std::string granted = m.after("(request (perceptor GPS)(name g))");
   CHECK(has(why("(request (perceptor GPS)(name g))"), "there is a node g already"));
   // Malformed ones are mistakes, which the log has.
   for (const char* wrong : {"(request)", "(request (perceptor))", "(request (perceptor GPS))",
                             "(request perceptor GPS)", "(request (perceptor (GPS))(name x))"})
-    CHECK_FALSE(has(m.after(wrong), "granted"));
+    CHECK(lacks(m.after(wrong), "granted", granted));
   // No more than its share.
   std::string last;
   for (int i = 0; i < 40; ++i) last = m.after("(request (perceptor GPS)(name more" + std::to_string(i) + "))", 2);
@@ -86,8 +87,10 @@ TEST_CASE("Requests cannot undo what limits an agent, and names are plain words"
        {"(request (effector SceneEffector)(name x))", "(request (effector RequestEffector)(name x))",
         "(request (perceptor RequestPerceptor)(name x))"})
     CHECK(has(m.after(given), "(refused (name x) (why expected the class of"));
+  const auto named = [&](const std::string& name) { return m.after("(request (perceptor GPS)(name " + name + "))"); };
+  const std::string plain = named("plain");
   for (const char* name : {"\"a b\"", "\"a\nb\"", "a\xff", "\xc3\xa9", "\";\""})
-    CHECK_FALSE(has(m.after("(request (perceptor GPS)(name " + std::string(name) + "))"), "(granted"));
+    CHECK(lacks(named(name), "(granted", plain));
 }
 
 TEST_CASE("Being able to ask is no robot") {
@@ -144,7 +147,8 @@ TEST_CASE("A rule refuses an agent's request the first time and disqualifies the
   const std::string first = m.after("(request (perceptor GPS)(name gps2))");
   INFO(first);
   CHECK(has(first, "(refused (name gps2) (why the rules do not allow GPS))"));
-  CHECK_FALSE(has(first, "(GPS "));
+  AskingMatch open;
+  CHECK(lacks(first, "(GPS ", open.after("(request (perceptor GPS)(name gps2))")));
   CHECK_FALSE(m.player.client.ended());
   m.after("(request (perceptor GPS)(name gps2))");
   CHECK(m.player.client.ended());
@@ -181,11 +185,12 @@ TEST_CASE("An agent may use an effector as often in a cycle as a rule allows") {
   m.after("(request (perceptor GPS)(name a))(request (perceptor GPS)(name b))");
   const std::string heard = m.after("(syn)");
   CHECK(has(heard, "(GPS (n a) "));
-  CHECK_FALSE(has(heard, "(GPS (n b) "));
   CHECK(has(m.after("(request (perceptor GPS)(name b))"), "(granted (name b))"));  // in another cycle
+  CHECK(lacks(heard, "(GPS (n b) ", m.after("(syn)")));
 }
 
 TEST_CASE("Without the property an agent cannot ask") {
-  AskingMatch m(false);
-  CHECK_FALSE(has(m.after("(request (perceptor GPS)(name gps2))"), "granted"));
+  AskingMatch with, without(false);
+  const std::string request = "(request (perceptor GPS)(name gps2))";
+  CHECK(lacks(without.after(request), "granted", with.after(request)));
 }

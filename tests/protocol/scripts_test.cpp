@@ -1,6 +1,7 @@
 // Perceptors, effectors and control aspects that are written in Lua.
 #include <catch2/catch.hpp>
 
+#include "absence.h"
 #include "arena.h"
 #include "spark/script_server.h"
 
@@ -44,15 +45,18 @@ struct ScriptArena : Arena {
     cycle();
   }
   /// How often the log holds a text.
-  int logged(const std::string& text) const {
-    int n = 0;
-    for (auto at = host.text.find(text); at != std::string::npos; at = host.text.find(text, at + 1)) ++n;
-    return n;
-  }
+  int logged(const std::string& text) const { return count(host.text, text); }
 
  private:
   Leaf& makeRule() { return kernel.create("ScriptAspect", "/sys/server/gamecontrol/rule"); }
 };
+
+/// A robot with a clock and an eye; `function` is the eye's handler.
+std::string clockAndEye(const std::string& function) {
+  return "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', " + function + ")";
+}
+/// What the robot senses if the script of its eye returns a number.
+std::string perceptsWithEye() { return ScriptArena(clockAndEye("function() return 1 end")).percepts(); }
 }  // namespace
 
 TEST_CASE("what the script of a ScriptPerceptor returns is its percept") {
@@ -70,20 +74,24 @@ TEST_CASE("what the script of a ScriptPerceptor returns is its percept") {
 }
 
 TEST_CASE("a ScriptPerceptor whose script returns nil senses nothing, and other names and intervals count") {
-  ScriptArena a(R"(
-    agent:new('TestClock', 'clock')
-    calls = 0
-    agent:new('ScriptPerceptor', 'quiet'):on('perceive', function() end)
-    local eye = agent:new('ScriptPerceptor', 'eye')
-    eye.predicateName, eye.interval = 'SEE', 3
-    eye:on('perceive', function() calls = calls + 1 return calls end))");
-  std::string all;
-  for (int i = 0; i < 9; ++i) {
-    a.cycle();
-    for (const std::string& message : a.client.drain()) all += message;
-  }
-  CHECK_THAT(all, Contains("(time (now") && Contains("(SEE 2)") && !Contains("(SEE 4)") && !Contains("quiet") &&
-                      !Contains("eye"));
+  const auto heard = [](const std::string& quiet, const std::string& name, int interval) {
+    ScriptArena a(
+        "calls = 0 agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'quiet'):on('perceive', "
+        "function() " +
+        quiet + " end) local eye = agent:new('ScriptPerceptor', 'eye') " + name + " eye.interval = " +
+        std::to_string(interval) + " eye:on('perceive', function() calls = calls + 1 return calls end)");
+    std::string all;
+    for (int i = 0; i < 9; ++i) {
+      a.cycle();
+      for (const std::string& message : a.client.drain()) all += message;
+    }
+    return all;
+  };
+  const std::string kName = "eye.predicateName = 'SEE'", all = heard("", kName, 3);
+  CHECK_THAT(all, Contains("(time (now") && Contains("(SEE 2)"));
+  CHECK(lacks(all, "(SEE 4)", heard("", kName, 1)));
+  CHECK(lacks(all, "quiet", heard("return 1", kName, 3)));
+  CHECK(lacks(all, "eye", heard("", "", 3)));
 }
 
 TEST_CASE("a text of a percept that is no word is sent in quotes") {
@@ -101,11 +109,11 @@ TEST_CASE("a text of a percept that is no word is sent in quotes") {
 
 TEST_CASE("a percept that cannot be sent is logged once and left out") {
   for (const char* returned : {"0/0", "{1, {'a', 1/0}}", "('a'):rep(70000)"}) {
-    ScriptArena a(
-        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
-        std::string(returned) + " end)");
+    ScriptArena a(clockAndEye("function() return " + std::string(returned) + " end"));
     INFO(returned);
-    CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+    const std::string percepts = a.percepts();
+    CHECK_THAT(percepts, Contains("(time (now"));
+    CHECK(lacks(percepts, "eye", perceptsWithEye()));
     CHECK(a.logged("/usr/scene/AgentAspect1/eye: its script returned a percept that cannot be sent: expected") == 1);
     CHECK(a.kernel.faults() > 1);
   }
@@ -113,11 +121,11 @@ TEST_CASE("a percept that cannot be sent is logged once and left out") {
 
 TEST_CASE("a percept that is too large is logged once and left out") {
   for (const char* returned : {"string.rep('x', 70000)", "table.pack(string.byte(string.rep('x', 9000), 1, -1))"}) {
-    ScriptArena a(
-        "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function() return " +
-        std::string(returned) + " end)");
+    ScriptArena a(clockAndEye("function() return " + std::string(returned) + " end"));
     INFO(returned);
-    CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+    const std::string percepts = a.percepts();
+    CHECK_THAT(percepts, Contains("(time (now"));
+    CHECK(lacks(percepts, "eye", perceptsWithEye()));
     CHECK(a.logged("/usr/scene/AgentAspect1/eye: its script returned a percept that cannot be sent: expected at most "
                    "65536 bytes, found more. This is logged once.") == 1);
   }
@@ -126,17 +134,22 @@ TEST_CASE("a percept that is too large is logged once and left out") {
 }
 
 TEST_CASE("a reason of a ScriptEffector that is too long is replaced by one line") {
-  ScriptArena a("agent:new('ScriptEffector', 'push'):on('perform', function() return string.rep('x', 2000) end)");
-  a.act("(push 1)");
-  CHECK(a.logged("push: its script returned a reason of 2000 bytes: expected at most 1024") == 1);
-  CHECK_FALSE(a.Arena::logged(std::string(4, 'x')));
+  const auto said = [](int bytes) {
+    ScriptArena a("agent:new('ScriptEffector', 'push'):on('perform', function() return string.rep('x', " +
+                  std::to_string(bytes) + ") end)");
+    a.act("(push 1)");
+    return a.host.text;
+  };
+  const std::string text = said(2000);
+  CHECK(count(text, "push: its script returned a reason of 2000 bytes: expected at most 1024") == 1);
+  CHECK(lacks(text, "xxxx", said(1024)));
 }
 
 TEST_CASE("an error in the script of a ScriptPerceptor is one line with file and line, and the others sense") {
-  ScriptArena a(
-      "agent:new('TestClock', 'clock') agent:new('ScriptPerceptor', 'eye'):on('perceive', function()\n error('no') "
-      "end)");
-  CHECK_THAT(a.percepts(), Contains("(time (now") && !Contains("eye"));
+  ScriptArena a(clockAndEye("function()\n error('no') end"));
+  const std::string percepts = a.percepts();
+  CHECK_THAT(percepts, Contains("(time (now"));
+  CHECK(lacks(percepts, "eye", perceptsWithEye()));
   CHECK(a.logged("handler of 'perceive' at /usr/scene/AgentAspect1/eye failed: test:2: no") == 1);
 }
 
@@ -164,7 +177,10 @@ TEST_CASE("a ScriptPerceptor may delete itself, other perceptors, its robot and 
 
 TEST_CASE("the script of a ScriptEffector gets its actions as tables") {
   ScriptArena a(R"(new('Taker', '/usr/taker')
-    agent:new('ScriptEffector', 'push'):on('perform', function(self, event) get('/usr/taker').taken = event.data end))");
+    agent:new('ScriptEffector', 'push'):on('perform', function(self, event)
+      get('/usr/taker').taken = event.data
+      if event.data[2] == 'wrong' then return 'it is wrong' end
+    end))");
   const auto taken = [&](const std::string& action) {
     a.act(action);
     return a.kernel.root().require<Taker>("/usr/taker").taken;
@@ -172,7 +188,9 @@ TEST_CASE("the script of a ScriptEffector gets its actions as tables") {
   CHECK(taken("(push 1 -0.5 fast \"12\" (to 3 goal))") ==
         Value(List{"push", 1.0, -0.5, "fast", "12", List{"to", 3.0, "goal"}}));
   CHECK(taken("(push)") == Value(List{"push"}));
-  CHECK_FALSE(a.Arena::logged("push:"));
+  const std::string before = a.host.text;
+  taken("(push wrong)");
+  CHECK(lacks(before, "push:", a.host.text));
 }
 
 TEST_CASE("a text that the script of a ScriptEffector returns is a mistake of the agent") {
@@ -180,9 +198,10 @@ TEST_CASE("a text that the script of a ScriptEffector returns is a mistake of th
     if type(event.data[2]) ~= 'number' then return 'expected a number, found ' .. tostring(event.data[2]) end
   end))");
   a.act("(push 3)");
-  CHECK_FALSE(a.Arena::logged("push:"));
+  const std::string before = a.host.text;
   a.act("(push hard)");
   a.act("(push hard)");
+  CHECK(lacks(before, "push:", a.host.text));
   CHECK(a.logged("agent 1 (" + a.client.name() + "): push: expected a number, found hard") == 1);
 }
 
@@ -212,16 +231,19 @@ TEST_CASE("a ScriptEffector may delete another one of its agent, whose later act
 }
 
 TEST_CASE("a ScriptBehavior may delete itself while it starts or thinks, and its agent leaves") {
-  for (const char* channel : {"start", "think"}) {
+  for (const auto& [channel, deletes] : {std::pair{"start", true}, {"think", true}, {"think", false}}) {
     Arena a;
     Leaf& behavior = a.kernel.create("ScriptBehavior", "/usr/agent/lua");
-    scripts(a.kernel).attachText(behavior, R"lua(
+    scripts(a.kernel).attachText(behavior,
+                                 R"lua(
       on("start", function(self) self.actions = "(scene robot)" end)
-      on(")lua" + std::string(channel) + R"lua(", function(self) self.actions = "(he1 1)" delete(self) end))lua",
+      on(")lua" + std::string(channel) +
+                                     R"lua(", function(self) self.actions = "(he1 1)" )lua" +
+                                     (deletes ? "delete(self)" : "") + " end)",
                                  "test", true);
     for (int i = 0; i < 6; ++i) a.cycle();
-    CHECK(a.agents() == 0);
-    CHECK(actionLog().empty());
+    CHECK(a.agents() == (deletes ? 0 : 1));
+    CHECK(actionLog().empty() == deletes);
   }
 }
 

@@ -103,6 +103,13 @@ TEST_CASE("Monitors receive a countdown until goals count again") {
   CHECK_FALSE(m.monitor().lastMessageHas("pass_mode_score_wait_right"));
   m.run(3);
   CHECK_FALSE(m.monitor().lastMessageHas("pass_mode_score_wait_left"));
+  m.trainer(Match::put(m.a1, -1.5, 0) + Match::put(m.b1, 0.35, 0) + Match::ballTo(0, 0));
+  m.run(2);
+  m.requestPass(m.b1);
+  m.touchThen(m.b1, "");
+  REQUIRE(m.mode() == "PlayOn");
+  CHECK(m.monitor().number("pass_mode_score_wait_right") == Approx(9.96).margin(0.001));
+  CHECK_FALSE(m.monitor().lastMessageHas("pass_mode_score_wait_left"));
 }
 
 TEST_CASE("A team cannot score for 10 s after its pass mode") {

@@ -1,5 +1,6 @@
 // Imports models into the tree.
 
+#include "absence.h"
 #include "mjcf_host.h"
 
 namespace spark::test {
@@ -113,6 +114,8 @@ TEST_CASE("with strict, a model that the tree cannot represent exactly is refuse
                Catch::Contains("passive"));
   }
   CHECK_FALSE(h.scene.child("m"));
+  h.import("<mujoco model='m'><worldbody><body><joint/><geom size='1'/></body></worldbody></mujoco>");
+  CHECK(h.scene.child("m"));
 }
 
 TEST_CASE("the options of a model set the world's parameters, unless it is imported with a prefix") {
@@ -181,6 +184,8 @@ TEST_CASE("a model that cannot be imported leaves nothing in the tree") {
     CHECK_THAT(h.failure(text), Catch::Contains(message));
     CHECK_FALSE(h.scene.child("m"));
   }
+  h.import(in("<body><freejoint/><geom size='1'/></body>"));
+  CHECK(h.scene.child("m"));
   h.step(1);
 }
 
@@ -259,6 +264,7 @@ TEST_CASE("flags switch limits, springs, contacts and actuators off") {
     CHECK(std::isinf(h.at<IJoint>("m/b/j").parameter(P::highStop, 0)));
     CHECK(h.at<IJoint>("m/b/j").parameter(P::damping, 0) == 2);
     CHECK(std::isinf(getProperty(*h.find("m/b/j/t"), "most").toNumber()));
+    CHECK(h.find("m/b/g"));
   }
   {
     RobotHost h;
@@ -330,11 +336,12 @@ TEST_CASE("a timestep that does not divide the cycle is reported") {
   setProperty(h.kernel.create("Simulation", "/sys/server/simulation"), "step", 0.02);
   for (const char* const fits : {"0.02", "0.01", "0.005", "0.002"})
     h.import(std::string("<mujoco model='m'><option timestep='") + fits + "'/></mujoco>");
-  CHECK(h.text.find("timestep") == std::string::npos);
+  const std::string before = h.text;
   h.import("<mujoco model='m'><option timestep='0.003'/></mujoco>");
   CHECK_THAT(h.text,
              Catch::Contains("m.xml:1:19: the timestep of 0.003 s does not divide the cycle of 0.02 s: 7 steps of "
                              "0.00285714 s each are used in its place"));
+  CHECK(lacks(before, "timestep", h.text));
   h.import("<mujoco model='m'><option timestep='0.05'/></mujoco>");
   CHECK_THAT(h.text, Catch::Contains("the timestep of 0.05 s does not divide the cycle of 0.02 s"));
 }
