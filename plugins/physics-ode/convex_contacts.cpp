@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "api/contact_points.h"
 #include "ode_shapes.h"
@@ -134,12 +135,17 @@ void moveToCylinder(const PlacedShape& a, dContactGeom& c) {
   const Vec3 before = a.rotation.transpose() * (toVec(c.pos) - a.position);
   const double half = a.shape.length / 2, radius = a.shape.radius, end = down.z() < 0 ? -half : half;
   Vec3 p(before.x(), before.y(), 0);
-  if (std::abs(down.z()) > kAligned)
-    p *= std::min(1.0, radius / p.norm());  // on the end
-  else
+  if (std::abs(down.z()) > kAligned) {  // on the end
+    p *= std::min(1.0, radius / p.norm());
+    c.depth += down.head<2>().dot((p - before).head<2>());
+  } else {
     p = radius * Vec3(down.x(), down.y(), 0).normalized();
+    // A corner of the prism is further out than the cylinder, the middle of a side is not.
+    constexpr double kStep = 2 * kPi / kPrismSides;
+    const double angle = std::atan2(down.y(), down.x()), fromCorner = angle - kStep * std::round(angle / kStep);
+    c.depth += down.head<2>().norm() * radius * (1 - std::cos(fromCorner) / std::cos(kStep / 2));
+  }
   p.z() = std::abs(down.z()) > kLying ? end : std::clamp(before.z(), -half, half);
-  c.depth += down.dot(p - before);
   for (int k = 0; k < 3; ++k) c.pos[k] = (a.position + a.rotation * p)[k];
 }
 

@@ -233,17 +233,17 @@ dGeomID create(const ShapeDescription& s, dSpaceID space, MadeShapes& made, Shar
 }  // namespace
 
 std::shared_ptr<OdeHull> prismAround(const ShapeDescription& cylinder) {
-  constexpr std::uint32_t kSides = 32;
-  const double radius = cylinder.radius / std::cos(kPi / kSides), half = cylinder.length / 2;
+  const double radius = cylinder.radius / std::cos(kPi / kPrismSides), half = cylinder.length / 2;
   auto mesh = std::make_shared<engine::Mesh>();
-  for (std::uint32_t i = 0; i < kSides; ++i) {
-    const double angle = 2 * kPi * i / kSides;
+  for (std::uint32_t i = 0; i < kPrismSides; ++i) {
+    const double angle = 2 * kPi * i / kPrismSides;
     for (const double z : {-half, half})
       mesh->vertices.insert(mesh->vertices.end(), {radius * std::cos(angle), radius * std::sin(angle), z});
     // Corners of this side: low, high, and the next ones.
-    const std::uint32_t low = 2 * i, high = low + 1, nextLow = (low + 2) % (2 * kSides), nextHigh = nextLow + 1;
+    const std::uint32_t low = 2 * i, high = low + 1, nextLow = (low + 2) % (2 * kPrismSides), nextHigh = nextLow + 1;
     mesh->triangles.insert(mesh->triangles.end(), {low, nextLow, nextHigh, low, nextHigh, high});
-    if (i >= 1 && i + 1 < kSides) mesh->triangles.insert(mesh->triangles.end(), {0, nextLow, low, 1, high, nextHigh});
+    if (i >= 1 && i + 1 < kPrismSides)
+      mesh->triangles.insert(mesh->triangles.end(), {0, nextLow, low, 1, high, nextHigh});
   }
   return std::make_shared<OdeHull>(std::move(mesh));
 }

@@ -81,7 +81,9 @@ struct SharedShape {
   std::shared_ptr<OdeHeights> heights;
 };
 
-/// A prism of 32 sides around a cylinder. ODE's own contacts of cylinders and meshes throw them about.
+inline constexpr std::uint32_t kPrismSides = 32;
+/// A prism of kPrismSides sides around a cylinder, with a corner along x. ODE's own contacts of cylinders and meshes
+/// throw them about.
 std::shared_ptr<OdeHull> prismAround(const engine::ShapeDescription& cylinder);
 /// Creates ODE's geom of a shape. What it refers to is written to `shared`.
 dGeomID createGeom(const engine::ShapeDescription& shape, dSpaceID space, MadeShapes& made, SharedShape& shared);
