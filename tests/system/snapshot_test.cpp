@@ -366,9 +366,20 @@ TEST_CASE("Parts of a recording are exported: a recording of its own, a table, a
 
   CHECK(exported({"--export", played}) > 100);
   CHECK(textOf(played) == textOf(log));
-  const Finished wrong = runToEnd({program("sparkreplay"), file, "--export", table, "--property", "ball"});
-  CHECK(wrong.code == 2);
-  CHECK_THAT(wrong.errors, Contains("expected /path.property for a column, found 'ball'"));
+  const std::string none = folder.path() / "none.csv", noLog = folder.path() / "none.log";
+  const std::pair<std::vector<std::string>, const char*> wrong[] = {
+      {{"--export", none, "--property", "ball"}, "expected /path.property for a column, found 'ball'"},
+      {{"--export", none}, "a table needs columns: --property /path.property, once for each"},
+      {{"--export", noLog, "--property", "/a.b"}, "--property is for tables: --export FILE.csv"},
+      {{"--export", none, "--property", "/a.b", "--from", "13", "--to", "12"}, "expected --to not before --from"}};
+  for (const auto& [arguments, why] : wrong) {
+    const Finished f = runToEnd(joined({program("sparkreplay"), file}, arguments));
+    CHECK(f.code == 2);
+    CHECK_THAT(f.errors, Contains(why));
+  }
+  CHECK(fs::exists(table));
+  CHECK_FALSE(fs::exists(none));
+  CHECK_FALSE(fs::exists(noLog));
 }
 
 TEST_CASE("What is no snapshot, or no longer fits, is refused with a reason") {

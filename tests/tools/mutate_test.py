@@ -284,7 +284,7 @@ class Tests(unittest.TestCase):
         cls.commands = suite.Suite.read_commands(type("Built", (), {"build": Path(sys.argv[1]).absolute()}))
 
     def test_ctest_names_the_programs(self):
-        self.assertEqual(self.commands["core-tree"], [str(Path(sys.argv[1]).absolute() / "tests/test-core-tree")])
+        self.assertTrue(self.commands["core-tree"][0].endswith("/tests/test-core-tree"))
         self.assertIn("[#zip_test]", self.commands["files-zip"])
 
     def test_the_table_of_nearest_tests_names_tests(self):

@@ -154,7 +154,6 @@ std::int64_t simulate(const Export& what, Prepare prepare, Done done) {
 }
 
 std::int64_t table(const Export& what) {
-  if (what.properties.empty()) throw Error("a table needs columns: --property /path.property, once for each");
   return simulate(
       what,
       [&what](Kernel& kernel) -> Leaf& {
@@ -190,6 +189,8 @@ std::int64_t write(const Export& given) {
   sparkhost::refuseSameFile(what.out, what.file, "the recording that is read");
   const std::string extension = fs::path(what.out).extension();
   const bool isTable = extension == ".csv";
+  if (isTable && what.properties.empty())
+    throw Error("a table needs columns: --property /path.property, once for each");
   if (!isTable && !what.properties.empty()) throw Error("--property is for tables: --export FILE.csv");
   for (const std::string& p : what.properties)
     if (p.empty() || p.front() != '/' || p.rfind('.') == std::string::npos || p.rfind('.') < p.rfind('/'))
