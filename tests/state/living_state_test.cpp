@@ -144,7 +144,7 @@ bool restores(Leaf& leaf, const std::string& saved, std::size_t at) {
   return false;
 }
 
-/// How many words of a class's saved state make no difference when they are loaded.
+/// How many words of a class's saved state, at most, make no difference when they are loaded.
 const std::map<std::string, std::size_t> kNotRestored{
     // What an axis has no use for: a suspension is the first axis' of a Hinge2Joint alone, motors have no coordinate,
     // that of a slider follows from its bodies.
@@ -223,9 +223,10 @@ TEST_CASE("The state of a running world is restored in another kernel, and both 
     std::vector<std::size_t> lost;
     for (std::size_t i = 0; i < words.length; ++i)
       if (!words.restored.contains(i)) lost.push_back(i);
-    if (lost.size() != allowed)
-      FAIL_CHECK(fmt::format("{}: expected {} words of its saved state that loadState() does not restore, found {}: {}",
-                             name, allowed, lost.size(), fmt::join(lost, " ")));
+    if (lost.size() > allowed)
+      FAIL_CHECK(fmt::format(
+          "{}: expected at most {} words of its saved state that loadState() does not restore, found {}: {}", name,
+          allowed, lost.size(), fmt::join(lost, " ")));
   }
   AllPlugins host;
   std::string unseen;

@@ -266,13 +266,16 @@ void makeLateMatch(World& w) {
 void makeScripts(World& w) {
   w.configureByText(R"lua(
     include "house.lua"
-    files() scene() physics() simulation()
+    files() scene() physics() simulation() agents{}
     new("Variables", "/sys/variables/Count")
     state.falls = 0
     on("rule", function(self, event)
       state.falls = state.falls + math.random(3)
       Count.falls = state.falls
     end)
+    local agent = get("/usr/scene"):new("Transform", "thing"):new("AgentAspect", "agent")
+    agent:new("ScriptPerceptor", "eye"):on("perceive", function() return { falls = Count.falls } end)
+    agent:new("ScriptBehavior", "mind"):on("think", function() end)
   )lua");
 }
 

@@ -68,8 +68,8 @@ TEST_CASE("sparkhost says what it cannot convert, and leaves no file") {
   fails(folder.write("bad.urdf", "<robot name='r'/>"), "bad.urdf:1:1: expected a <link>, found none");
   fails(folder.write("bad.rsg",
                      "(RSG 0 1)((nd Transform (nd RigidBody)(nd HingeJoint (attach ../RigidBody)(setAnchor 0 "
-                     "0 1)(setAxis 0))(setLocalRotation 90 0 0)(setName t)))"),
-        "HingeJoint (HingeJoint): cannot be written: its");
+                     "0 1)(setAxis 0))(sel RigidBody (setLocalPose 0 0 0 1 0 0 0 0 -1 0 1 0))(setName t)))"),
+        "HingeJoint (HingeJoint): cannot be written: its axis 0 is at 1.57");
   CHECK_THAT(convert("rsg/none.rsg", out).errors, Contains("there is no resource 'rsg/none.rsg'"));
   CHECK(runToEnd({program("sparkhost"), "--convert", "one.rsg"}).code == 2);
 }
