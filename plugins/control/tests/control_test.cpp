@@ -365,3 +365,17 @@ TEST_CASE("A client that never ends its line is disconnected") {
   }
   REQUIRE(getProperty(*f.control, "clients").toInteger() == 0);
 }
+
+TEST_CASE("A line of 64 KiB is a request, a longer one disconnects its client") {
+  for (const std::size_t bytes : {65536, 65537}) {
+    Fixture f;
+    f.connect();
+    std::string request = R"({"do":"plugins"})";
+    request.resize(bytes - 1, ' ');  // send() adds the end of the line
+    f.send(request);
+    for (int i = 0; i < 20; ++i) f.cycle();  // every cycle reads a part of it
+    CAPTURE(bytes);
+    REQUIRE(getProperty(*f.control, "clients").toInteger() == (bytes == 65536 ? 1 : 0));
+    if (bytes == 65536) REQUIRE(f.receive()["ok"] == true);
+  }
+}
