@@ -272,8 +272,20 @@ class Judge(unittest.TestCase):
         self.program(self.near[0], "exit 1")
         report = self.judged(["one <= 1;", "one > 1;"], 2, file, again="another")
         self.assertEqual(mutate.summary(report.rows.values())["all"], [2, 2])
+        report = self.judged(["one > 1;"], 1, file)
+        report.finish()
+        self.assertEqual(json.loads(file.read_text())["sums"]["all"], [1, 1])
         with self.assertRaises(SystemExit):
             mutate.Report(file, "2")
+
+    def test_what_survived_the_nearest_tests_alone_is_judged_again_by_all(self):
+        file = self.tree / "report.json"
+        self.program(self.far[0], "exit 1")
+        self.bench.far = False
+        self.assertEqual([r["verdict"] for r in self.judged(["one <= 1;"], 1, file).rows.values()], ["survived"])
+        self.bench.far = True
+        self.bench.known["remote"] = 1.0
+        self.assertEqual([r["verdict"] for r in self.judged(["one <= 1;"], 1, file).rows.values()], ["killed"])
 
 
 class Tests(unittest.TestCase):

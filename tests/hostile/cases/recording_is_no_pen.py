@@ -60,6 +60,9 @@ with Folder() as folder:
                 done = run(*command, cwd=folder)
                 judge(f"{what}, a file that is {'there' if old else 'new'}: {' '.join(command[:2])}",
                       (file.read_text() == "mine" if old else not file.exists()) and done.returncode >= 0, done.stderr)
+                if "FileLogSink" in what:
+                    judge(f"{what}: the log names the file and why it is not written",
+                          f"/sys/server/log/mine.file: {file} is not written, since a recording names it" in done.stderr, done.stderr)
                 file.unlink(missing_ok=True)
     mcap.write(
         folder / "b.mcap", mcap.forged(records, before + ["--set", f"logFile={folder / 'new'}"], {"watched.lua": text})
