@@ -37,18 +37,20 @@ TEST_CASE("an OBJ file has parts by material, in alphabetical order, with colour
   CHECK((v.position[0] == 1 && v.position[1] == 0 && v.position[2] == 1));
   CHECK((v.normal[1] == -1 && v.faceNormal[1] == -1));
   CHECK((v.place[0] == 1 && v.place[1] == 1));
-  for (const MeshMaterial& m : mesh.materials) {
-    if (m.name == "wood") {
-      CHECK(m.texture == "textures/wood.png");
-      CHECK(m.look.ambient.g == Approx(0.2));
-      CHECK(m.look.diffuse.b == Approx(0.6));
-      CHECK(m.look.specular.r == Approx(0.7));
-      CHECK(m.look.shininess == Approx(20));
-    } else if (m.name == "iron") {
-      CHECK(m.texture.empty());
-      CHECK(m.look.diffuse.a == Approx(0.5));
-    }
-  }
+  const auto material = [&](const std::string& name) {
+    for (const MeshMaterial& m : mesh.materials)
+      if (m.name == name) return m;
+    FAIL("no material " << name);
+    return MeshMaterial{};
+  };
+  const MeshMaterial wood = material("wood"), iron = material("iron");
+  CHECK(wood.texture == "textures/wood.png");
+  CHECK(wood.look.ambient.g == Approx(0.2));
+  CHECK(wood.look.diffuse.b == Approx(0.6));
+  CHECK(wood.look.specular.r == Approx(0.7));
+  CHECK(wood.look.shininess == Approx(20));
+  CHECK(iron.texture.empty());
+  CHECK(iron.look.diffuse.a == Approx(0.5));
 }
 
 TEST_CASE("a mesh without triangles is refused, and no file of the machine is read") {

@@ -12,6 +12,7 @@
 
 #include "../messages.h"
 #include "../wire.h"
+#include "absence.h"
 #include "api/phases.h"
 #include "api/scene.h"
 #include "fake_tape.h"
@@ -79,11 +80,6 @@ struct Mounting {
   }
 };
 
-std::size_t count(const std::string& text, const std::string& what) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
-  return n;
-}
 }  // namespace
 
 TEST_CASE("A mounted tree has the nodes of the other host, with their properties and methods") {
@@ -223,7 +219,7 @@ TEST_CASE("A remote host that goes costs one event and one line, and the simulat
   a.stop();
   CHECK(lost == 1);
   CHECK(who == "tester");
-  CHECK(count(a.host.text, "remote host tester") == 2);  // it came, and it went
+  CHECK(test::count(a.host.text, "remote host tester") == 2);  // it came, and it went
   CHECK_THAT(a.host.text, Contains("the connection ended"));
 }
 
@@ -242,7 +238,7 @@ TEST_CASE("When the other host ends, its nodes stay and say why they cannot be u
   b.server->as<IInputSource>()->poll();
   b.server->as<IInputSource>()->poll();
   CHECK(lost == 1);
-  CHECK(count(b.host.text, "is lost") == 1);
+  CHECK(test::count(b.host.text, "is lost") == 1);
   CHECK(getProperty(*b.mount, "connected") == Value(false));
 }
 
@@ -409,6 +405,7 @@ TEST_CASE("A Unix socket is for the user of the host and needs no token") {
     Mounting b(path);
     b.connect("");
     CHECK(b.mount->find("sys/server/simulation"));
+    CHECK(std::filesystem::exists(path));
   }
   CHECK_FALSE(std::filesystem::exists(path));
   // One that a killed host has left is taken over.

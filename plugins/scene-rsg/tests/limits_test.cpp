@@ -14,6 +14,9 @@ TEST_CASE("scene names that do not exist, leave the folder or are absolute are r
     CHECK_THROWS_AS(h.import(name), Error);
   }
   CHECK(h.scene->children().empty());
+  h.write("good.rsg", "(RSG 0 1)((nd Probe))");
+  h.import("good.rsg");
+  CHECK(h.scene->children().size() == 1);
 }
 
 TEST_CASE("a file that imports itself is stopped at the depth limit") {

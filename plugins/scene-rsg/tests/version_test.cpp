@@ -62,6 +62,8 @@ TEST_CASE("version 0.2 is strict, and what fails leaves nothing behind") {
   h.write("tail.rsg", "(RSG 0 2)((nd Probe)))");
   CHECK_THROWS_AS(h.import("tail.rsg"), Error);
   CHECK(h.scene->children().empty());
+  CHECK(failureOfOurs(h, "(nd Probe)") == "");
+  CHECK(h.scene->children().size() == 1);
 }
 
 TEST_CASE("in version 0.2 transforms stay, and evaluated numbers have all their digits") {
