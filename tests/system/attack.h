@@ -63,6 +63,15 @@ class Witness {
   std::string syn_;
 };
 
+/// The log of a host with a body that has no numbers: what a host says if an attacker gets one.
+inline const std::string& withoutNumbers() {
+  static const std::string log =
+      runToEnd({program("sparkhost"), "--config", SPARK_SOURCES "/tests/reports/cases/eng_no_number.lua", "--rate",
+                "max", "--duration", "0.2"})
+          .errors;
+  return log;
+}
+
 /// A host with a witness in it.
 struct Arena {
   Process host;

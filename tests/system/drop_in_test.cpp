@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -5,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "absence.h"
 #include "process.h"
 #include "temporary_folder.h"
 #include "test_support.h"
@@ -65,9 +67,13 @@ TEST_CASE("A plugin built outside the tree is found, described and used") {
   REQUIRE_THAT(described.out, Contains("beats") && Contains("integer") && Contains("Cycles between two beats.") &&
                                   Contains("handles: rule"));
 
-  const Finished run = must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(),
-                             "--rate", "max", "--duration", "1"});
-  REQUIRE_THAT(run.errors, Contains("beat 5") && !Contains("beat 6"));
+  const auto beats = [&](const char* duration) {
+    return must({host, "--config", (work / "metronome.lua").string(), "--plugin-path", plugins.string(), "--rate",
+                 "max", "--duration", duration});
+  };
+  const Finished run = beats("1");
+  REQUIRE_THAT(run.errors, Contains("beat 5"));
+  REQUIRE(lacks(run.errors, "beat 6", beats("1.3").errors));
   REQUIRE_THAT(run.out, Contains("\"cycles\":50"));
   REQUIRE_THAT(runToEnd({host, "--config", (work / "metronome.lua").string()}).errors,
                Contains("there is no plugin 'metronome'"));
@@ -88,8 +94,9 @@ TEST_CASE("An agent built outside the tree needs only the client library to play
   const Finished played =
       must({(work / "build" / "client").string(), "127.0.0.1", std::to_string(ports["agentPort"].get<int>()),
             std::to_string(ports["monitorPort"].get<int>())});
-  CHECK_THAT(played.out, Contains("0.98 s, head at") && Contains("the server closed the connection"));
-  CHECK_THAT(played.out, !Contains("head at 0.0 degrees"));
+  const std::string at = "0.98 s, head at ";
+  REQUIRE_THAT(played.out, Contains(at) && Contains("the server closed the connection"));
+  CHECK(std::stod(played.out.substr(played.out.find(at) + at.size())) != 0);
   CHECK(nlohmann::json::parse(host.line())["agentsSeen"] == 1);
   CHECK(host.wait() == 0);
 }
@@ -138,5 +145,10 @@ TEST_CASE("The pages that the installed documentation links to are installed") {
         "docs/first-robot.md", "docs/embedding.md", "docs/tutorial.md", "lua/README.md", "scenes/README.md",
         "plugins/sensors/README.md", "plugins/soccer/README.md", "tools/sparkbatch/README.md"})
     CHECK(fs::is_regular_file(pages / page));
-  CHECK_FALSE(fs::exists(pages / "plugins" / "monitor-web" / "viewer" / "node_modules"));
+  const auto installed = [&](const char* name) {
+    return std::any_of(fs::recursive_directory_iterator(spark.prefix), fs::recursive_directory_iterator(),
+                       [&](const fs::path& file) { return file.filename() == name; });
+  };
+  CHECK(installed("house.lua"));
+  CHECK_FALSE(installed("node_modules"));
 }

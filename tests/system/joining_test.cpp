@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "absence.h"
 #include "client.h"
 #include "process.h"
 #include "spark/predicates.h"
@@ -40,8 +41,21 @@ struct Host {
     process.signal(15);
     process.line();
     REQUIRE(process.wait() == 0);
-    REQUIRE(process.errors().find("effector registered") == std::string::npos);
-    REQUIRE(process.errors().find("refused") == std::string::npos);
+    for (const char* complaint : {"effector registered", "refused"})
+      REQUIRE(lacks(process.errors(), complaint, complaints()));
+  }
+  /// What a host says of a player that sends an unknown action and asks for a second robot.
+  static const std::string& complaints() {
+    static const std::string log = [] {
+      Host host(false);
+      Client player(host.port);
+      player.send("(scene rsg/agent/nao/nao.rsg)");
+      player.receive();
+      player.send("(fly 1)(scene rsg/agent/nao/nao.rsg)");
+      host.process.waitForError("refused");
+      return host.process.errors();
+    }();
+    return log;
   }
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "../../plugins/monitor-web/tests/piece_reader.h"
+#include "absence.h"
 #include "mcap.h"
 #include "recorded.h"
 
@@ -25,6 +26,12 @@ TEST_CASE("A match in lockstep is simulated again from its recording, to the las
   const Json about = Json::parse(runToEnd({program("sparkreplay"), match.file}).out);
   CHECK(about["seconds"] == Approx(25));
   CHECK_THAT(about["files"].dump(), Contains("script:soccer-sphere.lua") && Contains("file:rsg/agent/sphere.rsg"));
+}
+
+TEST_CASE("A recording has the requests that came, and a secret among their arguments not") {
+  const std::string word = "a-long-secret-word", secret = textsWith(word, true);
+  CHECK_THAT(secret, Contains("/usr/remote") && Contains("listen"));
+  CHECK(lacks(secret, word, textsWith(word, false)));
 }
 
 TEST_CASE("A match in real time with a trainer, sparkctl and a leaving team is simulated again, to the last bit") {

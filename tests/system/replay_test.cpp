@@ -72,6 +72,7 @@ TEST_CASE("A recording plays to monitors as the monitor log of the same match do
     INFO("at " << t << " s");
     CHECK(firstDifference(recording.at(t), text.at(t - first)) == "");
   }
+  CHECK(firstDifference(recording.at(4.24), text.at(0.64 - first)) != "");
 }
 
 TEST_CASE("A recording plays forwards and backwards, and begins where it is told") {
