@@ -264,6 +264,25 @@ void note(std::vector<std::string>& announced, const Parts& parts) {
 
 }  // namespace
 
+TEST_CASE("Messages of another shape, looks at other places and lines of the log are found") {
+  const auto of = [](const std::string& percepts) { return take("(time (now 1.00))" + percepts, 2); };
+  const Parts hinge = of("(HJ (n hj1) (ax 0.00))");
+  CHECK(difference(hinge, of("(HJ (n hj1) (ax -5.00))"), {}, false) == "");
+  for (const char* const other : {"(HJ (n hj1) (ax 0.000))", "(HJ (n hj2) (ax 0.00))", ""}) {
+    CHECK(difference(hinge, of(other), {}, false) != "");
+    CHECK(difference(of(other), hinge, {}, false) != "");
+  }
+  const auto fault = [](const std::string& other) {
+    Looks looks;
+    compareLooks("(See (F1L (pol 5.00 0.00 0.00)))", "(See (F1L (pol " + other + ")))", 0.005, looks);
+    return looks.fault;
+  };
+  CHECK(fault("5.00 0.10 0.00") == "");
+  for (const char* const other : {"9.00 0.00 0.00", "5.00 20.00 0.00", "5.00 0.00 -20.00"}) CHECK(fault(other) != "");
+  CHECK(complaints("no effector registered for predicate syn.\n") == "");
+  CHECK(complaints("no effector registered for predicate fly.\n") != "");
+}
+
 TEST_CASE("A recorded session of a player gives messages of the recorded shape, and vision within the noise") {
   Spread all;
   for (const Version& version : kVersions) {

@@ -42,7 +42,8 @@ std::string numberFault(const std::string& message) {
     if (t.kind != Token::Kind::text) continue;
     const std::string_view text = p.textOf(t);
     const std::size_t first = text.starts_with("-") ? 1 : 0;
-    if (text == "inf" || text == "-inf" || text == "-nan") return std::string(text);
+    for (const char* const none : {"nan", "-nan", "inf", "-inf"})
+      if (text == none) return std::string(text);
     if (first == text.size() || !std::isdigit(static_cast<unsigned char>(text[first]))) continue;
     if (text.find_first_not_of("0123456789.", first) != std::string_view::npos) return std::string(text);
   }
@@ -56,6 +57,17 @@ int robotsIn(const std::string& see) {
 }
 
 }  // namespace
+
+TEST_CASE("A number that is no plain decimal, and a mark with other digits, are found") {
+  const auto message = [](const std::string& number) { return "(HJ (n hj1) (ax " + number + "))"; };
+  for (const char* const plain : {"0.00", "-1.50", "12"}) CHECK(numberFault(message(plain)) == "");
+  for (const std::string bad : {"nan", "-nan", "inf", "-inf", "1e5", "-2.5e-7", "0x1"})
+    CHECK(numberFault(message(bad)) == bad);
+  CHECK(seeFault("(See (B (pol 1.00 2.00 3.00)))", 2) == "");
+  for (const char* const bad : {"(See (B (pol 1.0 2.00 3.00)))", "(See (B (pol 1.00 nan 3.00)))",
+                                "(See (X (pol 1.00 2.00 3.00)))", "(See  (B (pol 1.00 2.00 3.00)))"})
+    CHECK(seeFault(bad, 2) != "");
+}
 
 TEST_CASE("Twenty-two robots in view of each other get distinct messages of bounded size with plain numbers") {
   const std::string compat = GENERATE("M", "F", "L");

@@ -168,5 +168,7 @@ TEST_CASE("Every variable of the original league can be set by its name") {
   const Finished f = check(settings);
   CHECK(f.errors == "");
   CHECK(f.code == 0);
-  CHECK(check({"Soccer.FieldLenght=1"}).code == 2);
+  const Finished misspelt = check({"Soccer.FieldLenght=1"});
+  CHECK(misspelt.code == 2);
+  CHECK_THAT(misspelt.errors, Catch::Contains("FieldLenght"));
 }

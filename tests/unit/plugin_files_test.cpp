@@ -52,6 +52,9 @@ TEST_CASE("useFile refuses bad files too and leaves nothing mapped") {
     CHECK(host.kernel.root().child("plugins")->asNode()->children().empty());
     CHECK_FALSE(isMapped(bad(name)));
   }
+  host.kernel.plugins().useFile(good("fixture-base"));
+  CHECK(host.kernel.root().child("plugins")->asNode()->children().size() == 1);
+  CHECK(isMapped(good("fixture-base")));
   CHECK_THAT(refusal([&] { host.kernel.plugins().useFile("/nowhere/x.so"); }),
              Catch::Contains("/nowhere/x.so") && Catch::Contains("No such file"));
 }

@@ -1,7 +1,6 @@
 -- A group of variables is shared by all scripts and is part of the tree.
 -- expect: the config sees 10
 -- expect: Sumo.bouts is 10 at /sys/variables/Sumo
--- never: attempt to index
 include "house.lua"
 files() scene() simulation()
 new("Variables", "/sys/variables/Sumo"):set("bouts", 0)
