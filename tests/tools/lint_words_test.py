@@ -105,6 +105,22 @@ class LintWords(unittest.TestCase):
         self.assertIn("none.h is no file of this tree", result.stderr)
         self.assertEqual(self.run_script(Path(__file__)).returncode, 2)
 
+    def test_absence_in_a_test_has_a_control(self):
+        self.write("plugins/camera/tests/a_test.cpp",
+                   'CHECK(text.find("x") != text.npos);\nCHECK(lacks(text, "x", other));\n'
+                   'while (text.find("x") == text.npos) wait();\n'
+                   'CHECK_THAT(a, Contains("x"));\nif (!Contains("x").match(a)) return;\n')
+        self.write("plugins/camera/a.cpp", 'CHECK(text.find("x") == text.npos);\n')
+        self.assertEqual((self.run_script().returncode, self.run_script().stdout), (0, ""))
+        self.write("tests/unit/a_test.cpp",
+                   'CHECK(text.find("x") ==\n      std::string::npos);\nREQUIRE(said(3).find("x") == said.npos);\n'
+                   'CHECK_THAT(a, Contains("x") && !Catch::Contains("y"));\n')
+        result = self.run_script()
+        self.assertEqual((result.returncode, [line.split(": ")[0] for line in result.stdout.splitlines()
+                                              if ": an absence without a control: " in line]),
+                         (1, ["tests/unit/a_test.cpp:1", "tests/unit/a_test.cpp:3", "tests/unit/a_test.cpp:4"]))
+        self.assertIn("tests/absence.h", result.stdout)
+
     def test_plugins_use_neither_files_nor_libraries_of_tools(self):
         self.write("tools/agents/CMakeLists.txt", "add_library(brain STATIC a.cpp)\n")
         self.write("plugins/camera/CMakeLists.txt",
