@@ -227,7 +227,7 @@ TEST_CASE("Agents come back to their robots in a match that goes on") {
     for (int i = 0; i < 60; ++i)
       for (Client* client : {&one, &two}) {
         client->receive();
-        client->send("(drive 20 0 0)(syn)" + extra);
+        client->send("(drive 20 0 0)(syn)" + (i == 0 ? extra : ""));
       }
     host.signal(SIGTERM);
     const Json result = Json::parse(host.line());
