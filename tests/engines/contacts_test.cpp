@@ -116,6 +116,9 @@ TEST_CASE("the parts of a body do not collide with each other, and fall as one")
     CHECK(w.contacts.empty());
     CHECK(w.velocity(b).z() == Approx(-0.981));
     CHECK(std::abs(w.position(b).x()) < 1e-12);
+    w.sphere(w.position(b), 0.2);  // another body does collide
+    w.run(w.dt);
+    CHECK_FALSE(w.contacts.empty());
   });
 }
 

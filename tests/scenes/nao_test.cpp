@@ -303,6 +303,9 @@ TEST_CASE("An invalid type is an error and creates no nodes") {
     CHECK_THROWS_AS(league.import("rsg/agent/nao/nao_hetero.rsg", robot, arguments), Error);
     CHECK(robot.children().empty());
   }
+  Node& robot = league.agent("AgentAspect9");
+  league.import("rsg/agent/nao/nao_hetero.rsg", robot, List{0});
+  CHECK_FALSE(robot.children().empty());
 }
 
 TEST_CASE("A robot's appearance and its counted type always agree") {
