@@ -52,6 +52,16 @@ test("the world has the host's scene", () => {
   expect(live.world.versions.scene).toBe(1);
 });
 
+test("a match that is left is let go: its socket is closed, what was asked fails, and it is not connected again", async () => {
+  begin();
+  const asked = live.ask({ do: "get", path: "/usr/scene" });
+  live.close();
+  expect(host.socket.closed).toBe(true);
+  await expect(asked).rejects.toThrow();
+  vi.advanceTimersByTime(600_000);
+  expect(host.sockets).toHaveLength(1);
+});
+
 test("frames are shown smoothly with a small delay", () => {
   begin();
   let shown = 0, last = -1;
