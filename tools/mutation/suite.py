@@ -20,7 +20,7 @@ NEAREST = {
     "plugins/physics-articulated": ["oracle-limits", "oracle-contacts", "oracle-joints", "engines"],
     "plugins/physics-bullet": ["engines"], "plugins/physics-mujoco": ["engines", "models"],
     "plugins/humanoid-team": ["system-humanoid"], "plugins/sphere-team": ["system-match"], "plugins/recorder": ["system-recording", "system-snapshot"],
-    "plugins/monitor-sexp": ["monitor-captures"], "plugins/camera": ["camera-client"], "plugins/gamecontrol": ["protocol-agents", "protocol-joining"], "plugins/soccer": ["scenario-restarts", "scenario-goals", "scenario-fouls"],
+    "plugins/monitor-sexp": ["monitor-captures"], "plugins/camera": ["camera-client"], "plugins/gamecontrol": ["protocol-agents", "protocol-joining", "protocol-returning", "protocol-waiting"], "plugins/soccer": ["scenario-restarts", "scenario-goals", "scenario-fouls"],
     "tools/sparkctl": ["system-host"], "tools/sparkhost": ["system-host"], "tools/sparkreplay": ["system-recording"], "tools/sparkbatch": ["system-batch"],
     "tools/sparkcomm": ["system-rcssserver3d"], "tools/sparkwatch": ["web-watching"], "tools/spectators": ["monitor-crowd", "web-watching"], "tools/agents": ["system-demos", "system-joining"],
     "lua": ["golden"],
