@@ -70,7 +70,13 @@ TEST_CASE("A server of a scene that is not there waits for it") {
   const Falling first(h, "/usr/scene", "/sys/server/physics", "OdeEngine");
   Leaf& waiting = h.kernel.create("PhysicsServer", "/sys/server/physics2");
   setProperty(waiting, "scene", "/usr/later");
+  h.kernel.create("OdeCollision", "/sys/server/physics2/collision");
+  h.kernel.create("OdeEngine", "/sys/server/physics2/engine");
   h.step(5);
   CHECK(h.text.empty());
   CHECK_FALSE(waiting.as<IPhysicsServer>()->hasWorld());
+  h.kernel.create("Scene", "/usr/later");
+  h.kernel.create("World", "/usr/later/world");
+  h.step(1);
+  CHECK(waiting.as<IPhysicsServer>()->hasWorld());
 }
