@@ -92,11 +92,15 @@ TEST_CASE("A Unix socket is a port like any other") {
     REQUIRE(w.consumer->connections.front()->send("answer"));
     REQUIRE(c.receive() == "answer");
   }
-  SECTION("only its user can open it, and it is removed at the end") {
+  SECTION("only its user can open it, it stays where it listens, and it is removed at the end") {
     callMethod(w.port("local"), "listen", {});
     struct stat found = {};
     REQUIRE(::stat(file.c_str(), &found) == 0);
     REQUIRE((found.st_mode & 0777) == 0600);
+    const std::string elsewhere = folder.file("elsewhere.sock");
+    REQUIRE_THROWS_WITH(setProperty(w.port("local"), "file", elsewhere),
+                        Catch::Contains(fmt::format("it listens on {} already", file)));
+    REQUIRE(getProperty(w.port("local"), "file").toString() == file);
     w.port("local").parent()->remove(w.port("local"));
     REQUIRE_FALSE(std::filesystem::exists(file));
   }
