@@ -21,6 +21,7 @@ auto axesAt(mjtNum* m) { return Eigen::Map<Eigen::Matrix<mjtNum, 3, 3, Eigen::Ro
 
 void PieceContacts::add(const mjModel& m, int geom, const Vec3& front) {
   faces_.resize(static_cast<std::size_t>(m.ngeom));
+  for (std::vector<Point>* points : {&points_, &best_, &clipped_}) points->reserve(2 * mjMAXCONPAIR);  // for the steps
   const int mesh = m.geom_dataid[geom];
   if (m.geom_type[geom] != mjGEOM_MESH || mesh < 0 || m.mesh_graphadr[mesh] < 0) return;
   // The hull: numbers of vertices and triangles, two lists by vertex, one of edges, and the triangles' vertices.

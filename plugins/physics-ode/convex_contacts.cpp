@@ -131,21 +131,25 @@ namespace {
 /// Moves a contact at the prism around a cylinder to the cylinder.
 void moveToCylinder(const PlacedShape& a, dContactGeom& c) {
   constexpr double kLying = 0.2;  // sine of the angle up to which a cylinder lies on its side
+  constexpr double kStep = 2 * kPi / kPrismSides;
   const Vec3 normal = toVec(c.normal), down = -(a.rotation.transpose() * normal);
   const Vec3 before = a.rotation.transpose() * (toVec(c.pos) - a.position);
   const double half = a.shape.length / 2, radius = a.shape.radius, end = down.z() < 0 ? -half : half;
-  Vec3 p(before.x(), before.y(), 0);
-  if (std::abs(down.z()) > kAligned) {  // on the end
-    p *= std::min(1.0, radius / p.norm());
-    c.depth += down.head<2>().dot((p - before).head<2>());
-  } else {
-    p = radius * Vec3(down.x(), down.y(), 0).normalized();
-    // A corner of the prism is further out than the cylinder, the middle of a side is not.
-    constexpr double kStep = 2 * kPi / kPrismSides;
-    const double angle = std::atan2(down.y(), down.x()), fromCorner = angle - kStep * std::round(angle / kStep);
+  const bool atEnd =
+      std::abs(down.z()) > kLying && std::abs(end - before.z()) * std::abs(down.z()) <= c.depth + 0.01 * radius;
+  const double lowest = std::atan2(down.y(), down.x()), there = std::atan2(before.y(), before.x());
+  const bool isCorner = std::abs(std::remainder(there, kStep)) < 0.1 * kStep;
+  Vec3 p(before.x(), before.y(), atEnd ? end : std::clamp(before.z(), -half, half));
+  if (std::abs(down.z()) <= kAligned && isCorner && std::abs(std::remainder(lowest - there, 2 * kPi)) <= kStep) {
+    // A face of the mesh touches the side: corners of the prism are further out than the cylinder.
+    p.head<2>() = radius * down.head<2>().normalized();
+    const double fromCorner = lowest - kStep * std::round(lowest / kStep);
     c.depth += down.head<2>().norm() * radius * (1 - std::cos(fromCorner) / std::cos(kStep / 2));
+  } else {
+    // The end, or an edge of the mesh somewhere on the side.
+    p.head<2>() *= std::min(1.0, radius / p.head<2>().norm());
+    c.depth += down.head<2>().dot((p - before).head<2>());
   }
-  p.z() = std::abs(down.z()) > kLying ? end : std::clamp(before.z(), -half, half);
   for (int k = 0; k < 3; ++k) c.pos[k] = (a.position + a.rotation * p)[k];
 }
 

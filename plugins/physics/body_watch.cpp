@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <numeric>
 
 namespace spark::physics {
@@ -140,7 +141,8 @@ void BodyWatch::putToSleep(const engine::Contacts& contacts, double dt, bool lat
     }
     // Idle: asleep when both counters have run out.
     if (w.counters.idleStepsLeft == Counters().idleStepsLeft) w.start = {s.position, s.quaternion};
-    --w.counters.idleStepsLeft;
+    // It may stay idle and awake for ever, beside what is driven.
+    if (w.counters.idleStepsLeft > std::numeric_limits<int>::min()) --w.counters.idleStepsLeft;
     w.counters.idleTimeLeft -= dt;
     // What has just lost a contact may be about to fall.
     const std::uint32_t touching = w.lastContact == calls_ ? w.contacts : 0;
