@@ -347,10 +347,10 @@ TEST_CASE(
               CHECK(w.world.at(j).angleRate(0) == Approx(1).epsilon(0.02));
               expect(0.5);
               w.stops(j, 0, sign > 0 ? -0.3 : -0.8, sign > 0 ? 0.8 : 0.3);
-              w.run(1);
+              w.run(0.5);
               expect(0.8);
               w.motor(j, 0, -sign, 100);
-              w.run(2);
+              w.run(1.3);
               expect(-0.3);
               // Without motor: a push is braked by damping, and held by dry friction that is stronger.
               w.motor(j, 0, 0, 0);
@@ -363,12 +363,12 @@ TEST_CASE(
                   w.world.setAngularVelocity(p.child, {0, 0, direction * speed});
               };
               push(1);
-              w.run(2);
+              w.run(1);
               expect(-0.3 + 1.0 / 5);  // the way that damping leaves
               w.world.setParameter(j, JointParameter::damping, 0, 0);
               w.world.setParameter(j, JointParameter::dryFriction, 0, 2 * inertia);
               push(1);
-              w.run(2);
+              w.run(0.7);
               expect(-0.1 + 1.0 / (2 * 2));  // half the square of the speed by the deceleration
             },
             {&engine::Capabilities::joints});
