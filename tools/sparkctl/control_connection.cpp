@@ -160,7 +160,7 @@ Json ControlConnection::receive(Clock::time_point until) {
     else if (n == 0 || errno != EINTR)
       throw std::runtime_error("the simulation has ended");
   }
-  const Json answer = Json::parse(received_.substr(0, end), nullptr, false);
+  Json answer = Json::parse(received_.substr(0, end), nullptr, false);
   received_.erase(0, end + 1);
   if (!answer.is_object() || !answer.contains("ok") || !answer["ok"].is_boolean())
     throw std::runtime_error(fmt::format("the program that answers at {} is no simulation of this version", name_));
