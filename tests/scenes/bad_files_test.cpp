@@ -121,7 +121,7 @@ std::vector<BadFile> badWebots() {
       {"missing PROTO", "m.wbt", webots("None { }"), "m.wbt:3:1: ", "'None' is empty"},
       {"NaN position", "n.wbt", webots("Solid { translation 0 nan 0 }"), "n.wbt:3:", ""},
       {"infinite position", "n.wbt", webots("Solid { translation 0 1e400 0 }"), "n.wbt:3:", ""},
-      {"absurd position", "s.wbt", webots("Solid { translation 1e300 0 0 }"), "s.wbt:3:", "at most 1e+09"},
+      {"absurd position", "s.wbt", webots("Solid { translation 1e300 0 0 }"), "s.wbt:3:", "at most 1e+06"},
       {"absurd size", "s.wbt", webots("Solid { boundingObject Sphere { radius -1 } }"), "s.wbt:3:", "above 0"},
       {"too deep", "d.wbt", webots(repeated(500, "Group { children ") + repeated(500, "}")), "d.wbt:3:", ""},
   };
