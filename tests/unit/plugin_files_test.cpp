@@ -111,7 +111,7 @@ TEST_CASE("A file with a segment outside of the loaded memory is refused") {
 }
 
 #ifdef __x86_64__
-TEST_CASE("A file whose relocations or versions are damaged is refused, and the linker never reads them") {
+TEST_CASE("A file whose relocations, versions or hash tables are damaged is refused, and the linker never reads them") {
   const std::string whole = bytesOf(good("fixture-base"));
   const auto at = [&whole]<class T>(T, std::size_t offset) {
     T out;
@@ -119,16 +119,30 @@ TEST_CASE("A file whose relocations or versions are damaged is refused, and the 
     std::memcpy(&out, whole.data() + offset, sizeof out);
     return out;
   };
-  const test::TemporaryFolder folder;
+  const test::TemporaryFolder folder, intact;
   std::size_t written = 0;
-  const auto write = [&](std::size_t offset, const auto& damaged) {
-    std::string bytes = whole;
+  const auto put = [](std::string& bytes, std::size_t offset, const auto& damaged) {
+    REQUIRE(offset + sizeof damaged <= bytes.size());
     std::memcpy(bytes.data() + offset, &damaged, sizeof damaged);
+  };
+  const auto writeAll = [&](const std::string& bytes) {
     overwrite(folder.path() / (std::to_string(written++) + ".so"), bytes);
   };
+  const auto write = [&](std::size_t offset, const auto& damaged) {
+    std::string bytes = whole;
+    put(bytes, offset, damaged);
+    writeAll(bytes);
+  };
   const auto head = at(Elf64_Ehdr(), 0);
+  const auto sectionAt = [&](std::size_t i) { return at(Elf64_Shdr(), head.e_shoff + i * sizeof(Elf64_Shdr)); };
+  const auto sectionOf = [&](Elf64_Word type) {
+    for (std::size_t i = 0; i < head.e_shnum; ++i)
+      if (sectionAt(i).sh_type == type) return sectionAt(i);
+    FAIL("no section of type " << type);
+    return Elf64_Shdr();
+  };
   for (std::size_t i = 0; i < head.e_shnum; ++i) {
-    const auto section = at(Elf64_Shdr(), head.e_shoff + i * sizeof(Elf64_Shdr));
+    const auto section = sectionAt(i);
     if (section.sh_type == SHT_RELA) {
       const auto last = section.sh_offset + section.sh_size - sizeof(Elf64_Rela);  // it has a symbol
       auto r = at(Elf64_Rela(), last);
@@ -147,11 +161,80 @@ TEST_CASE("A file whose relocations or versions are damaged is refused, and the 
       library = at(Elf64_Verneed(), section.sh_offset);
       library.vn_aux = 1 << 30;
       write(section.sh_offset, library);
+      library = at(Elf64_Verneed(), section.sh_offset);
+      library.vn_cnt = 0;
+      write(section.sh_offset, library);
+      // Records that overlap: the same ones again, in steps of a byte.
+      std::string bytes = whole;
+      library = at(Elf64_Verneed(), section.sh_offset);
+      library.vn_aux = sizeof library;
+      library.vn_cnt = 1;
+      library.vn_next = 1;
+      put(bytes, section.sh_offset, library);
+      writeAll(bytes);
     } else if (section.sh_type == SHT_GNU_versym) {
       write(section.sh_offset + sizeof(Elf64_Half), Elf64_Half{0x7f00});  // of the first symbol
     }
   }
-  REQUIRE(written == 9);
+
+  // The dynamic section has room behind its end, which the linker does not read.
+  const auto dynamic = sectionOf(SHT_DYNAMIC), versions = sectionOf(SHT_GNU_verneed);
+  std::size_t end = dynamic.sh_offset;
+  while (at(Elf64_Dyn(), end).d_tag != DT_NULL) end += sizeof(Elf64_Dyn);
+  REQUIRE(end + 4 * sizeof(Elf64_Dyn) <= dynamic.sh_offset + dynamic.sh_size);
+  const auto entry = [](Elf64_Sxword tag, std::uint64_t value) {
+    Elf64_Dyn d{};
+    d.d_tag = tag;
+    d.d_un.d_val = value;
+    return d;
+  };
+  std::string behind = whole;
+  put(behind, end + sizeof(Elf64_Dyn), entry(DT_NEEDED, std::uint64_t{1} << 40));
+  overwrite(intact.path() / "behind.so", behind);
+  auto library = at(Elf64_Verneed(), versions.sh_offset);
+  library.vn_file = 0;  // no library's name
+  put(behind, versions.sh_offset, library);
+  writeAll(behind);
+  // More relocations are relative than the first ones; the last entry with a tag counts.
+  const auto relocations = sectionOf(SHT_RELA);
+  write(end, entry(DT_RELACOUNT, relocations.sh_size / sizeof(Elf64_Rela)));
+  write(end, entry(DT_STRTAB, std::uint64_t{1} << 40));
+
+  // Hash tables: number of buckets, first symbol, words of the filter, shift, the filter, buckets, lists.
+  using Word = Elf64_Word;
+  const std::size_t hash = sectionOf(SHT_GNU_HASH).sh_offset;
+  const std::size_t buckets = hash + 4 * sizeof(Word) + at(Word(), hash + 2 * sizeof(Word)) * sizeof(std::uint64_t);
+  const Word first = at(Word(), hash + sizeof(Word));
+  for (const Word count : {Word{0}, Word{1} << 30}) write(hash, count);
+  for (const Word filter : {0u, 3u, 1u << 28}) write(hash + 2 * sizeof(Word), filter);
+  write(hash + 3 * sizeof(Word), Word{64});
+  for (const Word bucket : {first - 1, first + (1u << 28)}) write(buckets, bucket);
+  const auto symbols = sectionOf(SHT_DYNSYM);
+  auto symbol = at(Elf64_Sym(), symbols.sh_offset + first * sizeof(Elf64_Sym));
+  symbol.st_name = 1 << 30;
+  write(symbols.sh_offset + first * sizeof symbol, symbol);
+  // The older kind: numbers of buckets and symbols, buckets, lists. It lies behind the end of the dynamic section.
+  const auto older = [&](std::initializer_list<Word> table) {
+    std::size_t to = end + 2 * sizeof(Elf64_Dyn);
+    std::string bytes = whole;
+    put(bytes, end, entry(DT_HASH, dynamic.sh_addr + (to - dynamic.sh_offset)));
+    for (const Word word : table) {
+      put(bytes, to, word);
+      to += sizeof word;
+    }
+    return bytes;
+  };
+  overwrite(intact.path() / "older.so", older({1, 3, 2, 0, 0, 1}));
+  writeAll(older({0, 3, 0, 0, 0}));            // no bucket
+  writeAll(older({1, 3, 3, 0, 0, 0}));         // a symbol that does not exist
+  writeAll(older({1, 3, 2, 0, 2, 1}));         // a list without end
+  writeAll(older({1, 1u << 30, 2, 0, 0, 1}));  // larger than the file
+  REQUIRE(written == 27);
+
+  for (const char* name : {"behind.so", "older.so"}) {
+    TestHost other(false);
+    CHECK(other.kernel.plugins().useFile(intact.path() / name).registered());
+  }
   TestHost host(false);
   const auto problems = host.kernel.plugins().scan(folder.path());
   for (const std::string& problem : problems) CHECK_THAT(problem, Catch::Contains("its headers are damaged"));

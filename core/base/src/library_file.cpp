@@ -14,8 +14,9 @@
 
 // Checks what the dynamic linker asserts or uses unchecked: the header tables are inside the file, segments are in
 // order and aligned, and the dynamic section and the tables it refers to are inside loaded segments; relocations, the
-// symbols that they use and needed versions refer to what exists. ELF specification 1.2; System V gABI, chapters 4 and
-// 5; its AMD64 supplement, chapter 4.4.1; Drepper, How to write shared libraries, appendix A (versions).
+// symbols that they use, hash tables and needed versions refer to what exists. ELF specification 1.2; System V gABI,
+// chapters 4 and 5; its AMD64 supplement, chapter 4.4.1; Drepper, How to write shared libraries, chapter 1.5.3 (hash
+// tables) and appendix A (versions).
 
 namespace spark {
 
@@ -84,34 +85,28 @@ constexpr Table kTables[] = {{DT_STRTAB, DT_STRSZ},
                              {DT_VERNEED, DT_NULL},
                              {DT_VERDEF, DT_NULL}};
 
-/// The entries of a library's dynamic section.
+/// The entries of a library's dynamic section before its end, DT_NULL.
 class DynamicSection {
  public:
   DynamicSection(const std::vector<Elf64_Dyn>& entries, const std::vector<Elf64_Phdr>& segments, int file)
       : entries_(entries), segments_(segments), contents_(file, segments) {}
 
   bool isDamaged() {
-    return !isTerminated() || !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit() || !versionsFit() ||
-           !relocationsFit();
+    return !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit() || !versionsFit() || !relocationsFit() ||
+           !gnuHashFits() || !hashFits();
   }
 
  private:
-  /// The first entry with that tag, nullptr if there is none before the end of the section.
+  /// The last entry with that tag, which is the one that the linker uses, or nullptr.
   const Elf64_Dyn* find(Elf64_Sxword tag) const {
-    for (const Elf64_Dyn& d : entries_) {
-      if (d.d_tag == DT_NULL) return nullptr;
-      if (d.d_tag == tag) return &d;
-    }
-    return nullptr;
+    const auto at = std::find_if(entries_.rbegin(), entries_.rend(), [&](const auto& d) { return d.d_tag == tag; });
+    return at == entries_.rend() ? nullptr : &*at;
   }
   bool has(Elf64_Sxword tag) const { return find(tag) != nullptr; }
   std::uint64_t value(Elf64_Sxword tag) const { return find(tag)->d_un.d_val; }
   bool isAbsentOr(Elf64_Sxword tag, std::uint64_t expected) const { return !has(tag) || value(tag) == expected; }
   bool isAbsentOrMultiple(Elf64_Sxword tag, std::uint64_t size) const { return !has(tag) || value(tag) % size == 0; }
 
-  bool isTerminated() const {
-    return std::any_of(entries_.begin(), entries_.end(), [](const Elf64_Dyn& d) { return d.d_tag == DT_NULL; });
-  }
   /// True if names and symbols exist, and each table of relocations has a size and a kind.
   bool hasRequired() const {
     return has(DT_STRTAB) && has(DT_STRSZ) && has(DT_SYMTAB) &&
@@ -146,7 +141,6 @@ class DynamicSection {
     const std::uint64_t size = value(DT_STRSZ);
     if (!contents_.read(value(DT_STRTAB), size, names_) || names_.empty() || names_.back() != 0) return false;
     for (const Elf64_Dyn& d : entries_) {
-      if (d.d_tag == DT_NULL) break;
       const bool isName = d.d_tag == DT_NEEDED || d.d_tag == DT_SONAME || d.d_tag == DT_RPATH || d.d_tag == DT_RUNPATH;
       if (isName && d.d_un.d_val >= size) return false;
     }
@@ -158,25 +152,31 @@ class DynamicSection {
              return d.d_tag == DT_NEEDED && std::strcmp(&names_[d.d_un.d_val], &names_[name]) == 0;
            });
   }
-  /// True if needed versions are those of needed libraries and have names. Notes the highest number of a version.
+  /// True if needed versions are those of needed libraries and have names, and records do not overlap. Notes the
+  /// highest number of a version.
   bool versionsFit() {
     std::vector<Elf64_Verneed> library;
     std::vector<Elf64_Vernaux> version;
     std::uint64_t at = has(DT_VERNEED) ? value(DT_VERNEED) : 0;
+    unsigned versions = 0;
     for (std::uint64_t next = at; next != 0 && at != 0; at += next) {
       if (!contents_.read(at, 1, library) || library[0].vn_version != VER_NEED_CURRENT || !isNeeded(library[0].vn_file))
         return false;
+      versions += library[0].vn_cnt;
+      if (library[0].vn_cnt == 0 || versions > kVersionMask) return false;
       std::uint64_t inner = at + library[0].vn_aux;
       for (int i = 0; i < library[0].vn_cnt; ++i, inner += version[0].vna_next) {
         if (!contents_.read(inner, 1, version) || version[0].vna_name >= names_.size()) return false;
-        if ((version[0].vna_next == 0) != (i + 1 == library[0].vn_cnt)) return false;
+        const bool isLast = i + 1 == library[0].vn_cnt;
+        if (isLast ? version[0].vna_next != 0 : version[0].vna_next < sizeof(Elf64_Vernaux)) return false;
         lastVersion_ = std::max<unsigned>(lastVersion_, version[0].vna_other & kVersionMask);
       }
       next = library[0].vn_next;
+      if (next != 0 && next < sizeof(Elf64_Verneed)) return false;
     }
     return true;
   }
-  /// True if a symbol that a relocation uses has a name and a version, and is code if the linker calls it.
+  /// True if a symbol that the linker uses has a name and a version, and is code if the linker calls it.
   bool symbolFits(std::uint64_t index) {
     std::vector<Elf64_Sym> symbol;
     if (!contents_.read(value(DT_SYMTAB) + index * sizeof(Elf64_Sym), 1, symbol) || symbol[0].st_name >= names_.size())
@@ -189,7 +189,56 @@ class DynamicSection {
     return contents_.read(value(DT_VERSYM) + index * sizeof(Elf64_Half), 1, version) &&
            (version[0] & kVersionMask) <= lastVersion_;
   }
-  bool relocationsFit() { return relocationsFit(DT_RELA, DT_RELASZ) && relocationsFit(DT_JMPREL, DT_PLTRELSZ); }
+  /// True if the hash table has a filter, its buckets refer to symbols of the table, and the last list of symbols ends.
+  bool gnuHashFits() {
+    constexpr std::uint64_t kHead = 4;  // words: number of buckets, first symbol, size of the filter, shift
+    std::vector<Elf64_Word> table, link;
+    if (!has(DT_GNU_HASH)) return true;
+    if (!contents_.read(value(DT_GNU_HASH), kHead, table)) return false;
+    const std::uint64_t buckets = table[0], first = table[1], filter = table[2], shift = table[3];
+    const std::uint64_t begin = kHead + 2 * filter, size = begin + buckets;
+    if (buckets == 0 || !std::has_single_bit(filter) || shift >= 64) return false;
+    if (!contents_.read(value(DT_GNU_HASH), size, table)) return false;
+    const auto bucket = table.begin() + static_cast<std::ptrdiff_t>(begin);
+    if (std::any_of(bucket, table.end(), [&](Elf64_Word b) { return b != 0 && b < first; })) return false;
+    const std::uint64_t last = *std::max_element(bucket, table.end());
+    if (last == 0) return true;
+    // The lists lie one behind another; the last word of each is odd.
+    for (std::uint64_t symbol = first;; ++symbol) {
+      if (!contents_.read(value(DT_GNU_HASH) + (size + symbol - first) * sizeof(Elf64_Word), 1, link) ||
+          !symbolFits(symbol))
+        return false;
+      if (symbol >= last && link[0] % 2 == 1) return true;
+    }
+  }
+  /// True if the hash table of the older kind has a bucket, and its lists refer to symbols of the table and end.
+  bool hashFits() {
+    std::vector<Elf64_Word> table;
+    if (!has(DT_HASH)) return true;
+    if (!contents_.read(value(DT_HASH), 2, table)) return false;
+    const std::uint64_t buckets = table[0], symbols = table[1];
+    if (buckets == 0 || !contents_.read(value(DT_HASH), 2 + buckets + symbols, table)) return false;
+    std::uint64_t used = 0;  // each symbol is in one list
+    for (std::uint64_t i = 0; i < buckets; ++i)
+      for (std::uint64_t symbol = table[2 + i]; symbol != STN_UNDEF; symbol = table[2 + buckets + symbol])
+        if (symbol >= symbols || ++used > symbols || !symbolFits(symbol)) return false;
+    return true;
+  }
+  bool relocationsFit() {
+    return relocationsFit(DT_RELA, DT_RELASZ) && relocationsFit(DT_JMPREL, DT_PLTRELSZ) && relativesFit();
+  }
+  /// True if the relocations that the linker takes for relative ones are.
+  bool relativesFit() const {
+#ifdef __x86_64__
+    std::vector<Elf64_Rela> relocations;
+    return !has(DT_RELACOUNT) || (has(DT_RELA) && contents_.read(value(DT_RELA), value(DT_RELACOUNT), relocations) &&
+                                  std::all_of(relocations.begin(), relocations.end(), [](const Elf64_Rela& r) {
+                                    return ELF64_R_TYPE(r.r_info) == R_X86_64_RELATIVE;
+                                  }));
+#else
+    return true;
+#endif
+  }
   /// True if the relocations of a table change writable memory by what exists. What they point to is not followed,
   /// unless it is called.
   bool relocationsFit(Elf64_Sxword table, Elf64_Sxword size) {
@@ -272,9 +321,11 @@ std::string libraryProblem(const std::string& path) {
 
   // The dynamic section.
   std::vector<Elf64_Dyn> entries(dynamic->p_filesz / sizeof(Elf64_Dyn));
-  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size()) ||
-      DynamicSection(entries, segments, file).isDamaged())
-    return damaged;
+  if (!readAt(file, dynamic->p_offset, entries.data(), entries.size())) return damaged;
+  const auto null = std::find_if(entries.begin(), entries.end(), [](const auto& d) { return d.d_tag == DT_NULL; });
+  if (null == entries.end()) return damaged;
+  entries.erase(null, entries.end());
+  if (DynamicSection(entries, segments, file).isDamaged()) return damaged;
   return {};
 }
 
