@@ -6,6 +6,7 @@
 #include <iterator>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 
 #include "api/scene_joint.h"
@@ -114,6 +115,28 @@ std::pair<Vec3, Mat3> principalAxes(const Mat3& inertia, const Mat3& wanted) {
   return {solver.eigenvalues(), axes};
 }
 
+/// MuJoCo's compiler refuses the world of a moving body whose mass or moments are below 1e-15 (mjMINVAL).
+constexpr double kLeastMass = 2e-15;  // kg, and of moments kg m^2
+
+/// A mass with its principal moments of inertia.
+struct Inertial {
+  double mass = 0;             // kg
+  Vec3 center = Vec3::Zero();  // m
+  Vec3 moments = Vec3::Zero();
+  Mat3 axes = Mat3::Identity();
+
+  explicit Inertial(const engine::Part& p) : mass(p.mass), center(p.center) {
+    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6. Rounding may leave moments below 0.
+    std::tie(moments, axes) = principalAxes(p.inertia, p.axes);
+    moments = moments.cwiseMax(0);
+  }
+  double least() const { return std::min(mass, moments.minCoeff()); }
+  void raise() {
+    mass = std::max(mass, kLeastMass);
+    moments = moments.cwiseMax(kLeastMass);
+  }
+};
+
 /// Writes the elements of a world.
 struct Writer {
   const Model& model;
@@ -124,6 +147,7 @@ struct Writer {
   std::string out;
   std::vector<std::vector<Index>> children, geoms;                            // by link; by body
   std::unordered_map<const engine::Mesh*, Index> meshOf = {}, piecesIn = {};  // the geom whose name it has
+  std::vector<std::uint64_t> raised = {};                                     // as in Written
 
   template <class... A>
   void put(fmt::format_string<A...> format, A&&... arguments) {
@@ -342,12 +366,19 @@ struct Writer {
     for (engine::Part& p : parts) p.mass *= share, p.inertia *= share, p.center -= moment / sum;
     return parts;
   }
-  void putInertial(const engine::Body& b, const engine::Part& part) {
-    if (part.mass == 0 && (part.center - b.linkOrigin).isZero()) return;
-    // MuJoCo's own decomposition of an inertia leaves an error of 1e-6.
-    const auto [moments, axes] = principalAxes(part.inertia, part.axes);
-    put(R"(<inertial mass="{}" diaginertia="{}")", part.mass, text(moments));
-    putPose({part.center - b.linkOrigin, axes});
+  /// The same as MuJoCo takes them: one of them must weigh enough.
+  std::vector<Inertial> inertialsOf(const engine::Body& b, double mass, const Mat3& inertia) {
+    std::vector<Inertial> out;
+    for (const engine::Part& p : partsOf(b, mass, inertia)) out.emplace_back(p);
+    if (std::any_of(out.begin(), out.end(), [](const Inertial& i) { return i.least() >= kLeastMass; })) return out;
+    out.front().raise();
+    raised.push_back(b.id);
+    return out;
+  }
+  void putInertial(const engine::Body& b, const Inertial& i) {
+    if (i.mass == 0 && (i.center - b.linkOrigin).isZero()) return;
+    put(R"(<inertial mass="{}" diaginertia="{}")", i.mass, text(i.moments));
+    putPose({i.center - b.linkOrigin, i.axes});
     put("/>\n");
   }
   void putGeoms(Index body, std::size_t part, std::size_t parts) {
@@ -379,7 +410,7 @@ struct Writer {
     if (parent != kNone) place.position -= model.bodies[trees.links[parent].body].linkOrigin;
     putPose(place);
     put(">\n");
-    const auto parts = partsOf(b, mass, inertia);
+    const std::vector<Inertial> parts = inertialsOf(b, mass, inertia);
     putInertial(b, parts.front());
     for (const std::size_t i : chain) putJoint(trees.links[i]);
     putGeoms(link.body, 0, parts.size());
@@ -445,8 +476,8 @@ bool hasOwnDrag(const Model& model) {
   return (o.density > 0 || o.viscosity > 0) && o.integrator != 1 && std::none_of(geoms.begin(), geoms.end(), hasDrag);
 }
 
-std::string toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes,
-                   const Constraints& constraints, const MeshPieces& pieces) {
+Written toMjcf(const Model& model, const Trees& trees, double step, const Sizes& sizes, const Constraints& constraints,
+               const MeshPieces& pieces) {
   Writer w{model, trees, constraints, pieces, step, {}, {}, {}};
   w.children.resize(trees.links.size());
   for (Index i = 0; i < trees.links.size(); ++i)
@@ -487,7 +518,7 @@ std::string toMjcf(const Model& model, const Trees& trees, double step, const Si
   w.put("</actuator>\n");
   w.out += constraints.text();
   w.put("</mujoco>\n");
-  return std::move(w.out);
+  return {std::move(w.out), std::move(w.raised)};
 }
 
 }  // namespace spark::mujoco

@@ -69,8 +69,13 @@ OptionNumbers optionsOf(const engine::Model& model);
 /// damping implicitly.
 bool hasActuators(const engine::Model& model);
 
-/// The text. `step`: length of a step [s].
-std::string toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes,
-                   const Constraints& constraints, const MeshPieces& pieces);
+/// A world as text.
+struct Written {
+  std::string mjcf;
+  std::vector<std::uint64_t> raised;  ///< identities of bodies whose masses or moments are too small for MuJoCo
+};
+/// `step`: length of a step [s].
+Written toMjcf(const engine::Model& model, const Trees& trees, double step, const Sizes& sizes,
+               const Constraints& constraints, const MeshPieces& pieces);
 
 }  // namespace spark::mujoco

@@ -135,9 +135,9 @@ void MujocoSolver::build(const engine::Model& model, const engine::State& state)
   Trees trees(model, state);
   const Constraints constraints(model, trees);
   reportSkipped(constraints);
-  const std::string text = toMjcf(model, trees, step_, sizes_, constraints, pieces_);
+  Written text = toMjcf(model, trees, step_, sizes_, constraints, pieces_);
   try {
-    begin(model, std::move(trees), compileWorld(text));
+    begin(model, std::move(trees), compileWorld(std::move(text)));
     if (before) world_->takeActivations(*before);
     poses_ = posesOf(state);
   } catch (const Error& e) {
@@ -155,6 +155,24 @@ void MujocoSolver::reportSkipped(const Constraints& constraints) {
           pathOfConstraint(engine_.kernel().root(), number));
 }
 
+void MujocoSolver::reportRaised(const std::vector<std::uint64_t>& bodies) {
+  // Bodies that come later have higher identities.
+  std::uint64_t newest = newestRaised_, first = 0;
+  int count = 0;
+  for (const std::uint64_t id : bodies) {
+    if (id <= newestRaised_) continue;
+    newest = std::max(newest, id);
+    if (count++ == 0) first = id;
+  }
+  newestRaised_ = newest;
+  if (count == 0) return;
+  engine_.kernel().log().warning(
+      "{}{}: its mass [kg] or moments of inertia [kg m^2] are taken as 2e-15: expected more than 1e-15, MuJoCo takes "
+      "no "
+      "less of a body that moves",
+      pathOf<IRigidBody>(engine_.kernel().root(), first), count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
+}
+
 void MujocoSolver::reportStiff(const engine::Model& model) {
   if (saidStiff_ || world_->stiffJoint() == engine::kNone) return;
   saidStiff_ = true;
@@ -165,6 +183,7 @@ void MujocoSolver::reportStiff(const engine::Model& model) {
 }
 
 void MujocoSolver::begin(const engine::Model& model, Trees trees, Compiled compiled) {
+  reportRaised(compiled.raised);
   // The system takes back the memory of a large world in milliseconds: in another thread.
   auto world = std::make_unique<MujocoWorld>(model, std::move(trees), std::move(compiled), pieces_);
   if (world_) world->takeActivations(*world_);

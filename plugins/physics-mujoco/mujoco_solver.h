@@ -52,6 +52,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   void refuse(const std::string& why, const engine::Model* model = nullptr);
   /// Logs the constraints that are left out and were not before.
   void reportSkipped(const Constraints& constraints);
+  /// Logs the first of these bodies that the log does not have yet.
+  void reportRaised(const std::vector<std::uint64_t>& bodies);
   /// Logs the first joint whose law MuJoCo alone could not step.
   void reportStiff(const engine::Model& model);
 
@@ -59,7 +61,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   MeshPieces pieces_;
-  std::uint64_t newestGeom_ = 0;  ///< identity: the log has its mesh
+  std::uint64_t newestGeom_ = 0;    ///< identity: the log has its mesh
+  std::uint64_t newestRaised_ = 0;  ///< identity: the log has that its mass is raised
   bool saidStiff_ = false;
   Sizes sizes_;
   double step_ = 0.005;       ///< s

@@ -44,9 +44,10 @@ void touch(void* block, std::size_t bytes) {
 }
 }  // namespace
 
-Compiled compileWorld(const std::string& mjcf, bool ahead) {
+Compiled compileWorld(Written world, bool ahead) {
   Compiled c;
-  c.model = compile(mjcf);
+  c.model = compile(world.mjcf);
+  c.raised = std::move(world.raised);
   c.data.reset(mj_makeData(c.model.get()));
   if (!c.data) throw Error("MuJoCo has no memory for the world");
   const mjModel& m = *c.model;

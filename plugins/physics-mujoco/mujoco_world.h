@@ -24,10 +24,11 @@ struct Compiled {
   DataPointer data;
   /// Numbers of bodies, joints and geoms by name: mj_name2id() compares them one by one.
   std::unordered_map<std::string, int> bodies, joints, geoms;
+  std::vector<std::uint64_t> raised;  ///< as in Written
 };
-/// Compiles MJCF text; in any thread. Throws Error with MuJoCo's message. `ahead`: its memory is there when the first
+/// Compiles a world; in any thread. Throws Error with MuJoCo's message. `ahead`: its memory is there when the first
 /// step begins, at the cost of time now.
-Compiled compileWorld(const std::string& mjcf, bool ahead = false);
+Compiled compileWorld(Written world, bool ahead = false);
 
 class MujocoWorld {
  public:
