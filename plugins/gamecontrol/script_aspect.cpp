@@ -42,27 +42,24 @@ void ScriptAspect::agentLeaving(AgentAspect& agent) { tell(kLeaving, agent); }
 std::string ScriptAspect::judgeRequest(AgentAspect& agent, const PartRequest& request) {
   constexpr const char* kKinds[] = {"perceptor", "effector", "scene"};
   const Value data(List{agent.path(), kKinds[std::size_t(request.kind)], request.type, request.name, request.file});
-  return verdict(kRequest, data, &ScriptAspect::requestFailed_);
+  return verdict(kRequest, data);
 }
 
 std::string ScriptAspect::judgeAction(AgentAspect& agent, const Effector&, const Element& action) {
-  if (!actions_ || (actions_->empty() && actionFailed_ == kNever)) return {};
+  if (!actions_ || actions_->empty()) return {};
   const Value data(List{agent.path(), gamecontrol::toValue(action)});
-  return verdict(kAction, data, &ScriptAspect::actionFailed_);
+  return verdict(kAction, data);
 }
 
-/// All handlers are asked, and one that refuses is enough. A rule that fails grants nothing: neither when a handler
-/// fails, nor while one that took too long, and has been switched off, does not answer any more.
-std::string ScriptAspect::verdict(std::string_view channel, const Value& data, std::int64_t ScriptAspect::*failed) {
+/// All handlers are asked, and one that refuses is enough. A rule that fails grants nothing. A handler that is switched
+/// off, as it took too long, counts a fault whenever it is asked, so what it guards stays refused until it is removed.
+std::string ScriptAspect::verdict(std::string_view channel, const Value& data) {
   constexpr const char* kFailed = "the rule failed, the log says why";
   const Ref<ScriptAspect> self(this);  // its script may remove it
   Kernel& kernel = this->kernel();
   const std::int64_t faults = kernel.faults();
   const List answers = gamecontrol::askScripts(*this, channel, gamecontrol::eventNow(simulation_.get()), &data);
-  const auto count = static_cast<std::int64_t>(answers.size());
-  const bool fails = kernel.faults() != faults || (self && count <= this->*failed);
-  if (self) this->*failed = fails ? count : kNever;
-  if (fails) return kFailed;
+  if (kernel.faults() != faults) return kFailed;
   for (const Value& answer : answers) {
     if (answer.isNil() || answer.isString()) continue;
     kernel.countFault();

@@ -13,7 +13,8 @@ namespace spark {
 /// "perceptor", class, name, file }, and a text that it returns refuses the request; `file` is the scene file that the
 /// part comes with, or "". `action` runs when an agent acts; `event.data` is { path of the agent's aspect, action },
 /// and a text that it returns refuses the action. All handlers are asked, and one that refuses is enough. Without a
-/// verdict, as a script failed or returned something else, what it judges is refused.
+/// verdict, as a script failed or returned something else, what it judges is refused, until the handler that fails is
+/// removed or replaced.
 class ScriptAspect : public ControlAspect, public IAgentJudge {
   SPARK_CLASS(ScriptAspect, ControlAspect)
  public:
@@ -30,14 +31,12 @@ class ScriptAspect : public ControlAspect, public IAgentJudge {
  private:
   void script(const std::string& file, const Value& arguments);
   void tell(std::string_view channel, const AgentAspect& agent);
-  static constexpr std::int64_t kNever = -1;
-  /// Why the handlers of `channel` refuse, or "". `failed`: how many of them answered when one failed the last time.
-  std::string verdict(std::string_view channel, const Value& data, std::int64_t ScriptAspect::*failed);
+  /// Why the handlers of `channel` refuse, or "".
+  std::string verdict(std::string_view channel, const Value& data);
 
   Link<ISimulation> simulation_;
   Channel* actions_ = nullptr;  ///< of `action`
-  std::int64_t requestFailed_ = kNever, actionFailed_ = kNever;
-  bool isWrong_ = false;  ///< it has returned what is no verdict
+  bool isWrong_ = false;        ///< it has returned what is no verdict
 };
 
 }  // namespace spark

@@ -162,6 +162,28 @@ TEST_CASE("each handler that uses up its budget is switched off and logged") {
   CHECK_THAT(h.text, Equals(line + line));
 }
 
+TEST_CASE("a handler that is switched off fails each event that asks it for an answer, until it is removed") {
+  LuaHost h;
+  Thing& a = h.thing("/usr/a");
+  h.run("endless = get('/usr/a'):on('ask', function() while true do end end)");
+  const auto faults = [&h, &a] {
+    const std::int64_t before = h.kernel.faults();
+    Value answers(List{});
+    Event event{"ask"};
+    event.answer = &answers;
+    h.kernel.events().channel("ask").emitAt(a, event);
+    CHECK(answers.toList().empty());
+    return h.kernel.faults() - before;
+  };
+  CHECK(faults() == 1);
+  CHECK(faults() == 1);
+  const std::int64_t before = h.kernel.faults();
+  h.emit("ask");  // wants no answer
+  CHECK(h.kernel.faults() == before);
+  h.run("endless:remove()");
+  CHECK(faults() == 0);
+}
+
 TEST_CASE("a handler that calls itself without end is switched off and logged") {
   LuaHost h;
   Thing& a = h.thing("/usr/a");

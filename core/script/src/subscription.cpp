@@ -35,6 +35,10 @@ void Subscription::remove() {
 void Subscription::run(const Event& event) {
   if (removed || state->closed() || !node || node->kernel().isEnding()) return;
   if (!owner) return remove();  // the node of the script has been removed
+  if (off) {
+    if (event.answer) node->kernel().countFault();
+    return;
+  }
   Runtime& runtime = state->runtime();
   const auto keep = runtime.shared_from_this();  // the handler may remove the script server
   const Restore running(runtime.scriptNode, owner);
@@ -66,7 +70,7 @@ void Subscription::run(const Event& event) {
   });
   if (!failure) return;
   runtime.report(*failure, *this);
-  if (failure->exhausted) remove();
+  off = off || failure->exhausted;
 }
 
 }  // namespace spark::script

@@ -19,12 +19,14 @@ struct Subscription {
   Channel* channel = nullptr;  ///< of the kernel
   std::uint64_t number = 0;    ///< in the channel
   bool removed = false;
+  bool off = false;  ///< it used up its budget and is not called any more
 
   ~Subscription();
   /// Removes the handler from its channel.
   void remove();
   /// Calls the handler. What it returns is appended to the list that the emitter wants to have answered, or replaces
-  /// the answer. A failure is logged; a handler that used up its budget is removed.
+  /// the answer. A failure is logged and counted. A handler that used up its budget is switched off until it is
+  /// removed: each event that wants an answer of it is a further failure.
   void run(const Event& event);
 };
 
