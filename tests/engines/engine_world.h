@@ -35,6 +35,23 @@ inline const EngineKind kEngines[] = {
     {"PointMassEngine", "point-masses"}, {"LateEngine", "late-contacts"},
 };
 
+/// Lets a kernel find the plugins of all engines.
+inline void scanEngines(Kernel& kernel) {
+  kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
+}
+
+/// Keeps the plugins of all engines loaded from the first call to the end of the program. Loading takes most of the
+/// time of a short world, and the address sanitizer frees nothing of what it notes about the globals of a library.
+inline void keepEnginesLoaded() {
+  static TestHost keeper;
+  [[maybe_unused]] static const bool loaded = [] {
+    scanEngines(keeper.kernel);
+    for (const EngineKind& kind : kEngines)
+      if (kind.built()) keeper.kernel.plugins().use(kind.plugin);
+    return true;
+  }();
+}
+
 /// A shape with triangles: a mesh, or a convex one.
 inline engine::ShapeDescription meshOf(engine::Mesh mesh, Shape shape = Shape::mesh) {
   return {.shape = shape, .mesh = std::make_shared<const engine::Mesh>(std::move(mesh))};
@@ -56,7 +73,8 @@ struct EngineWorld : TestHost, engine::IContactSink {
 
   explicit EngineWorld(const EngineKind& k, bool exactReplay = false)
       : kind(k), world(exactReplay), space(world.createSpace(physics::SpaceHandle::none)) {
-    kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
+    keepEnginesLoaded();
+    scanEngines(kernel);
     kernel.plugins().use("physics-ode");
     kernel.plugins().use(k.plugin);
     makeEngine();
