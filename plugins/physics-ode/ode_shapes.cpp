@@ -34,36 +34,67 @@ MeshPointer withTwoTriangles(MeshPointer mesh) {
   return out;
 }
 
-/// Which triangles lie on another one that looks at the opposite side, and come behind it: those share an edge, however
-/// each side is cut into triangles.
-std::vector<std::uint8_t> isReverse(const engine::Mesh& m) {
-  // Corners in one place are one.
-  std::vector<std::uint32_t> order(m.vertices.size() / 3), corner(order.size());
+/// For each vertex the first one in its place.
+std::vector<std::uint32_t> firstVertices(const engine::Mesh& m) {
+  std::vector<std::uint32_t> order(m.vertices.size() / 3), first(order.size());
   std::iota(order.begin(), order.end(), 0U);
   const auto at = [&m](std::uint32_t i) { return std::array{m.vertex(i).x(), m.vertex(i).y(), m.vertex(i).z()}; };
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return at(a) < at(b); });
   for (std::size_t i = 0; i < order.size(); ++i)
-    corner[order[i]] = i > 0 && at(order[i]) == at(order[i - 1]) ? corner[order[i - 1]] : order[i];
+    first[order[i]] = i > 0 && at(order[i]) == at(order[i - 1]) ? first[order[i - 1]] : order[i];
+  return first;
+}
 
+/// For each triangle the first one with its corners that looks at its side.
+std::vector<std::uint32_t> firstTriangles(std::vector<std::array<std::uint32_t, 3>> corners) {
+  for (auto& c : corners) std::rotate(c.begin(), std::min_element(c.begin(), c.end()), c.end());
+  std::vector<std::uint32_t> order(corners.size()), first(order.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return std::pair(corners[a], a) < std::pair(corners[b], b); });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    first[order[i]] = i > 0 && corners[order[i]] == corners[order[i - 1]] ? first[order[i - 1]] : order[i];
+  return first;
+}
+
+/// Which triangles lie on another one that looks at the opposite side, and come behind it: those share an edge, however
+/// each side is cut into triangles.
+std::vector<std::uint8_t> isReverse(const engine::Mesh& m) {
+  const std::vector<std::uint32_t> vertex = firstVertices(m);
+  std::vector<std::array<std::uint32_t, 3>> corners;
+  std::vector<Vec3> normals;
+  for (std::size_t i = 0; i < m.triangles.size(); i += 3) {
+    const std::uint32_t* const c = m.triangles.data() + i;
+    corners.push_back({vertex[c[0]], vertex[c[1]], vertex[c[2]]});
+    normals.push_back((m.vertex(c[1]) - m.vertex(c[0])).cross(m.vertex(c[2]) - m.vertex(c[0])).normalized());
+  }
+
+  // The edges of triangles that lie on none of their own side: thousands of triangles may lie in one place.
   struct Edge {
     std::uint32_t from, to, triangle;
     auto operator<=>(const Edge&) const = default;
   };
+  const std::vector<std::uint32_t> first = firstTriangles(corners);
   std::vector<Edge> edges;
-  std::vector<Vec3> normals;
-  for (std::uint32_t t = 0; 3 * t < m.triangles.size(); ++t) {
-    const std::uint32_t* const c = m.triangles.data() + std::size_t{3} * t;
-    for (int i = 0; i < 3; ++i) edges.push_back({corner[c[i]], corner[c[(i + 1) % 3]], t});
-    normals.push_back((m.vertex(c[1]) - m.vertex(c[0])).cross(m.vertex(c[2]) - m.vertex(c[0])).normalized());
-  }
-  const std::vector<Edge> unsorted = edges;
+  for (std::uint32_t t = 0; t < corners.size(); ++t)
+    for (std::size_t i = 0; i < 3 && first[t] == t; ++i) edges.push_back({corners[t][i], corners[t][(i + 1) % 3], t});
   std::sort(edges.begin(), edges.end());
+
+  // One triangle after the other: what is reverse makes no other one reverse.
   constexpr double kOpposite = -1 + 1e-6;  // cosine between the normals
-  std::vector<std::uint8_t> out(normals.size(), 0);
-  for (const Edge& e : unsorted)
-    for (auto other = std::lower_bound(edges.begin(), edges.end(), Edge{e.to, e.from, 0});
-         other != edges.end() && other->from == e.to && other->to == e.from && other->triangle < e.triangle; ++other)
-      if (!out[other->triangle] && normals[other->triangle].dot(normals[e.triangle]) < kOpposite) out[e.triangle] = 1;
+  std::vector<std::uint8_t> out(corners.size(), 0);
+  const auto liesOnEarlier = [&](std::uint32_t t, std::uint32_t from, std::uint32_t to) {
+    for (auto other = std::lower_bound(edges.begin(), edges.end(), Edge{to, from, 0});
+         other != edges.end() && other->from == to && other->to == from && other->triangle < t; ++other)
+      if (!out[other->triangle] && normals[other->triangle].dot(normals[t]) < kOpposite) return true;
+    return false;
+  };
+  for (std::uint32_t t = 0; t < corners.size(); ++t) {
+    const auto& c = corners[t];
+    out[t] = first[t] != t
+                 ? out[first[t]]
+                 : liesOnEarlier(t, c[0], c[1]) || liesOnEarlier(t, c[1], c[2]) || liesOnEarlier(t, c[2], c[0]);
+  }
   return out;
 }
 
