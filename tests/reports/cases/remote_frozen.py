@@ -2,13 +2,11 @@
 # row: p95
 # input: a rule reads properties of a mounted host that is stopped in the middle of a run, and goes on later
 # right: the rule gets the last values at once, with their age; the link stays, and the values go on when the host does
-import signal
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "lib"))
-from mounts import *  # noqa: E402,F403
-from programs import *  # noqa: E402,F403
+from mounts import freezes  # noqa: E402
 
 SERVED = """
 get("/sys/server/simulation").step = 0.01
@@ -45,12 +43,4 @@ on("rule", function(_, event)
   end
 end)
 """
-with Folder() as folder, Served(folder, SERVED) as served:
-    with Mounted(folder, served, MOUNTED, "--duration", "60", "--record", folder / "run.mcap") as mounted:
-        for line in mounted.lines():
-            if "stop it" in line:
-                served.process.send_signal(signal.SIGSTOP)
-            elif "let it go on" in line:
-                served.process.send_signal(signal.SIGCONT)
-    code, again, log = verify(folder / "run.mcap")
-    judge("the recording is simulated again", code == 0 and again.get("differs", "") is None, f"{code} {again} {log}")
+freezes(SERVED, MOUNTED)

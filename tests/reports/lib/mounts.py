@@ -1,8 +1,9 @@
 """Helpers of cases in which one host mounts the scene of another one."""
+import signal
 import subprocess
 from pathlib import Path
 
-from programs import BIN, Live, judge
+from programs import BIN, Folder, Live, judge, verify
 
 SERVES = """
 include "house.lua"
@@ -78,3 +79,16 @@ def mounted(folder, served, code, *arguments):
     """Such a host, to its end. Returns its log."""
     with Mounted(folder, served, code, "--rate", "max", *arguments) as host:
         return list(host.lines())
+
+
+def freezes(served, mounted):
+    """Such a host, recorded, in which the served one stops at the line "stop it" and goes on at "let it go on"."""
+    with Folder() as folder, Served(folder, served) as server:
+        with Mounted(folder, server, mounted, "--duration", "60", "--record", folder / "run.mcap") as host:
+            for line in host.lines():
+                if "stop it" in line:
+                    server.process.send_signal(signal.SIGSTOP)
+                elif "let it go on" in line:
+                    server.process.send_signal(signal.SIGCONT)
+        code, again, log = verify(folder / "run.mcap")
+        judge("the recording is simulated again", code == 0 and again.get("differs", "") is None, f"{code} {again} {log}")
