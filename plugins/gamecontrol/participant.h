@@ -27,6 +27,7 @@
 
 #include "api/agents.h"
 #include "api/inputs.h"
+#include "api/mistakes.h"
 #include "gamecontrol/action_queue.h"
 #include "gamecontrol/agent_log.h"
 #include "gamecontrol/effector_table.h"
@@ -34,7 +35,6 @@
 #include "gamecontrol/latency_meter.h"
 #include "gamecontrol/line_budget.h"
 #include "gamecontrol/lockstep_record.h"
-#include "gamecontrol/mistakes.h"
 #include "gamecontrol/perceptor_table.h"
 #include "gamecontrol/transit_queue.h"
 #include "spark/state.h"

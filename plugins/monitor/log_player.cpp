@@ -1,5 +1,7 @@
 #include "log_player.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -10,6 +12,7 @@ namespace spark {
 
 namespace {
 constexpr double kMaxSpeed = 100;
+constexpr const char* kExpected = "expected a number of 0 or more";
 constexpr double kTolerance = 1e-6;            // records; the sum of time steps is not exact
 constexpr std::int64_t kMaxDamagedLines = 10;  // in the log, about damaged records
 constexpr std::size_t kBegin = 64;             // bytes of a file that tell its format
@@ -47,6 +50,7 @@ void LogPlayer::describe(Description<LogPlayer>& d) {
   d.property("damaged", &P::damaged_).readOnly().doc("Number of records that could not be played and were skipped.");
   d.implements<IFrameSource>();
   d.implements<ITrainer>();
+  d.implements<ICommandCheck>();
 }
 
 void LogPlayer::setFile(std::string path) {
@@ -234,12 +238,34 @@ bool LogPlayer::fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const
   return std::exchange(shownShape_, scene_.shape()) != scene_.shape();
 }
 
+namespace {
+/// The argument of a command: NAN unless it is a number of 0 or more.
+double argumentOf(const Element& command) {
+  const Element e = command.at(1);
+  const double v = e && !e.isList() ? e.number() : NAN;
+  return std::isfinite(v) && v >= 0 ? v : NAN;
+}
+}  // namespace
+
+std::string LogPlayer::check(const Element& command) {
+  const std::string_view name = command.head();
+  const bool isKey = name.size() == 1 && std::string_view("pflb").find(name) != std::string_view::npos;
+  if (!isKey && name != "speed" && name != "record" && name != "time") return {};
+  if (!log()) return "there is no log";
+  const std::size_t count = isKey ? 0 : 1;
+  if (!isKey && std::isnan(argumentOf(command))) return kExpected;
+  if (name == "speed" && argumentOf(command) > kMaxSpeed)
+    return fmt::format("expected at most {}, which it is now", kMaxSpeed);
+  return command.size() == count + 1 ? std::string()
+                                     : fmt::format("expected {}, found {}: the rest is ignored",
+                                                   isKey ? "no argument" : "one argument", command.size() - 1);
+}
+
 bool LogPlayer::command(const Element& command, std::string& why) {
   const std::string_view name = command.head();
-  const auto argument = [&]() -> double {
-    const Element e = command.at(1);
-    const double v = e && !e.isList() ? e.number() : NAN;
-    if (!std::isfinite(v) || v < 0) why = "expected a number of 0 or more";
+  const auto argument = [&] {
+    const double v = argumentOf(command);
+    if (std::isnan(v)) why = kExpected;
     return v;
   };
   if (name == "p")

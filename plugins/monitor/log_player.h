@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "api/command_check.h"
 #include "api/drawing.h"
 #include "frame_source.h"
 #include "log_file.h"
@@ -26,13 +27,14 @@ namespace spark {
 ///
 /// A seek far away is split over several frames. Commands only set its target: however many come in a cycle, one seek
 /// follows.
-class LogPlayer : public Node, public IFrameSource, public ITrainer {
+class LogPlayer : public Node, public IFrameSource, public ITrainer, public ICommandCheck {
   SPARK_CLASS(LogPlayer, Node)
  public:
   static void describe(Description<LogPlayer>& d);
 
   bool fill(MonitorFrame& frame, std::vector<std::uint64_t>& ids, const Event& event, bool watched) override;
   bool command(const Element& command, std::string& why) override;
+  std::string check(const Element& command) override;
 
  protected:
   void saveState(StateWriter& out) const override;

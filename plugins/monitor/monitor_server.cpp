@@ -14,7 +14,8 @@ namespace spark {
 
 namespace {
 constexpr std::uint32_t kMaxQueuedTokens = 1u << 15;  // of commands; messages beyond that are dropped
-constexpr std::int64_t kLogInterval = 250;            // cycles between two log lines about commands of one kind
+constexpr std::int64_t kLogInterval = 250;            // cycles between two log lines about dropped messages
+constexpr std::size_t kMaxQuote = 40;                 // bytes of a command that a message repeats
 }  // namespace
 
 void MonitorServer::describe(Description<MonitorServer>& d) {
@@ -74,46 +75,59 @@ std::string MonitorServer::queueCommands(IParser* parser, std::string_view from,
     commands_.truncate(before);
     return dropMessage(from);
   }
-  if (result.message.empty()) {
-    const std::string unknown = describeUnknown(before);
-    std::string mistake = unknown.empty() ? describeMistake(before) : unknown;
-    // The error is only logged and returned to the caller: the protocol has no replies, and monitors could not parse
-    // one.
-    auto& loggedAt = unknown.empty() ? mistakeLoggedAt_ : unknownLoggedAt_;
-    if (!mistake.empty() && (!loggedAt || last_.cycle - *loggedAt >= kLogInterval)) {
-      loggedAt = last_.cycle;
-      kernel().log().info("{}: from {}: {}", path(), from, mistake);
-    }
-    return mistake;
-  }
-  kernel().log().debug("{}: from {}: {}:{}: {}; the other commands count", path(), from, result.line, result.column,
-                       result.message);
-  return fmt::format("{}:{}: {}", result.line, result.column, result.message);
+  std::string mistakes;
+  const auto add = [&](std::string_view name, const std::string& why) {
+    logOnce(from, name, why);
+    mistakes += fmt::format("{}{}", mistakes.empty() ? "" : "; ", why);
+  };
+  if (!result.message.empty())
+    add("", fmt::format("{}:{}: {}; the other commands count", result.line, result.column, result.message));
+  else if (commands_.size() == before)
+    add("", "expected commands in parentheses, found none");
+  addMistakes(before, add);
+  return mistakes;
 }
 
-std::string MonitorServer::describeUnknown(std::uint32_t first) const {
-  if (knownCommands_.empty()) return {};
+/// The protocol has no replies, and monitors could not parse one: the log and callers inside the host get the mistakes.
+/// A flood of mistakes must not cost more than the commands themselves.
+template <typename Add>
+void MonitorServer::addMistakes(std::uint32_t first, Add add) {
+  constexpr int kMost = 8;
+  int found = 0;
   for (const Element command : commands_) {
-    if (command.index() < first || !command.isList()) continue;
-    const std::string_view name = command.head();
-    if (std::find(knownCommands_.begin(), knownCommands_.end(), name) == knownCommands_.end())
-      return fmt::format("there is no command '{}' here.{}", name.substr(0, 40),
-                         didYouMean(name.substr(0, 40), knownCommands_));
+    if (command.index() < first) continue;
+    const std::string why = mistakeOf(command);
+    if (why.empty()) continue;
+    if (++found > kMost) return add("", "there are more mistakes");
+    mistaken_.push_back(command.index());
+    add(command.isList() ? command.head() : std::string_view(), why);
+  }
+}
+
+std::string MonitorServer::mistakeOf(const Element& command) const {
+  if (!command.isList())
+    return fmt::format("expected a command in parentheses, found '{}'", command.text().substr(0, kMaxQuote));
+  const std::string_view name = command.head();
+  if (name.empty()) return "expected a command, found parentheses without a name";
+  if ((name == "reqfullstate" || name == "killsim") && command.size() > 1)
+    return fmt::format("{}: expected no arguments, found {}: they are ignored", name, command.size() - 1);
+  if (!knownCommands_.empty() && std::find(knownCommands_.begin(), knownCommands_.end(), name) == knownCommands_.end())
+    return fmt::format("there is no command '{}' here.{}", name.substr(0, kMaxQuote),
+                       didYouMean(name.substr(0, kMaxQuote), knownCommands_));
+  for (const Found<ITrainer>& trainer : trainers_) {
+    const auto check = trainer.leaf->as<ICommandCheck>();
+    const std::string why = check ? check->check(command) : std::string();
+    if (!why.empty()) return fmt::format("{}: {}", name.substr(0, kMaxQuote), why);
   }
   return {};
 }
 
-/// The first command from there on that its trainer finds a mistake in.
-std::string MonitorServer::describeMistake(std::uint32_t first) const {
-  for (const Element command : commands_) {
-    if (command.index() < first || !command.isList()) continue;
-    for (const Found<ITrainer>& trainer : trainers_) {
-      const auto check = trainer.leaf->as<ICommandCheck>();
-      const std::string why = check ? check->check(command) : std::string();
-      if (!why.empty()) return fmt::format("{}: {}", command.head().substr(0, 40), why);
-    }
-  }
-  return {};
+void MonitorServer::logOnce(std::string_view from, std::string_view name, std::string_view why) {
+  const std::uint64_t kind = Mistakes::kindOf(name.substr(0, kMaxQuote), why);
+  if (logged_.known(kind) || logged_.full()) return;
+  logged_.add(kind);
+  kernel().log().info("{}: from {}: {}{}", path(), from, why,
+                      logged_.full() ? ". No more mistakes in commands are logged." : "");
 }
 
 void MonitorServer::commandOrThrow(const std::string& text) {
@@ -142,6 +156,7 @@ void MonitorServer::act(const Event& event) {
   if (!takesCommands(event)) return;
   for (const Element command : commands_) execute(command);
   commands_.clear();
+  mistaken_.clear();
 }
 
 void MonitorServer::execute(const Element& command) {
@@ -156,13 +171,17 @@ void MonitorServer::execute(const Element& command) {
   if (!name.empty())
     for (const Found<ITrainer>& trainer : trainers_)
       if (trainer->command(command, why)) {
-        if (!why.empty()) kernel().log().debug("{}: command '{}' ignored: {}", path(), name, why);
+        if (!why.empty()) ignored(command, why);
         return;
       }
-  if (command.isList())
-    kernel().log().debug("{}: unknown command '{}' ignored", path(), name);
-  else
-    kernel().log().debug("{}: expected a command in parentheses, found '{}'; ignored", path(), command.text());
+  ignored(command, "no trainer knows it");
+}
+
+/// What was found wrong when the command came is logged already.
+void MonitorServer::ignored(const Element& command, std::string_view why) {
+  if (std::binary_search(mistaken_.begin(), mistaken_.end(), command.index())) return;
+  const std::string_view name = command.isList() ? command.head() : command.text();
+  logOnce("a trainer", name, fmt::format("command '{}' ignored: {}", name.substr(0, kMaxQuote), why));
 }
 
 // ---- frames ----

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "api/agents.h"
+#include "api/mistakes.h"
 #include "api/monitor.h"
 #include "api/net.h"
 #include "api/phases.h"
@@ -73,10 +74,14 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   /// Parses a message (`parser` nullptr: S-expressions) and queues its commands. Returns as command().
   std::string queueCommands(IParser* parser, std::string_view from, std::string_view message);
   std::string dropMessage(std::string_view from);
-  /// The first unknown command from token `first` of `commands_` on, with the nearest known one, as a sentence; "" if
-  /// all are known.
-  std::string describeUnknown(std::uint32_t first) const;
-  std::string describeMistake(std::uint32_t first) const;
+  /// Calls add(name, sentence) for each of the first mistakes in `commands_` from token `first` on.
+  template <typename Add>
+  void addMistakes(std::uint32_t first, Add add);
+  /// Why not all of `command` will have an effect, as a sentence; "" if it will.
+  std::string mistakeOf(const Element& command) const;
+  /// Logs a mistake in the command `name` once for each kind.
+  void logOnce(std::string_view from, std::string_view name, std::string_view why);
+  void ignored(const Element& command, std::string_view why);
   /// As command(), for scripts and sparkctl. Throws Error if a command will not be executed.
   void commandOrThrow(const std::string& text);
 
@@ -98,7 +103,9 @@ class MonitorServer : public Node, public IMonitorServer, public IConnectionCons
   std::vector<std::unique_ptr<MonitorClient>> clients_;  ///< in order of arrival
   Predicates commands_;                                  ///< wait for the next cycle that executes commands
   std::int64_t dropped_ = 0;                             ///< messages since the last log line about them
-  std::optional<std::int64_t> droppedLoggedAt_, unknownLoggedAt_, mistakeLoggedAt_;  ///< cycle of the last line
+  std::optional<std::int64_t> droppedLoggedAt_;          ///< cycle of the last line about them
+  std::vector<std::uint32_t> mistaken_;                  ///< tokens in `commands_` whose mistakes are logged; ascending
+  Mistakes logged_;                                      ///< the kinds of mistakes that are logged
 
   // Used by publish() and sendTo(); members, so that they keep their capacity. Indices refer to the clients of
   // sendTo().

@@ -82,18 +82,26 @@ std::string wrongPart(const Element& command, std::string_view usage) {
   const auto parts = partsOf(usage);
   const std::size_t words = parts.empty() ? std::count(usage.begin(), usage.end(), ' ') : 0;
   if (parts.empty() && command.size() != words + 1)
-    return fmt::format("expected {} arguments, found {}", words, command.size() - 1);
+    return fmt::format("expected {} argument{}, found {}: the rest is ignored", words, words == 1 ? "" : "s",
+                       command.size() - 1);
   if (parts.empty()) return {};
   for (std::size_t i = 1; i < command.size(); ++i) {
     const Element part = command.at(i);
     const std::string_view name = (part.isList() ? part.head() : part.text()).substr(0, kMaxQuote);
     const auto known = std::find_if(parts.begin(), parts.end(), [&](const auto& p) { return p.first == name; });
     if (!part.isList() || known == parts.end()) return fmt::format("found '{}', which is ignored", name);
+    if (const Element first = command.named(name); first && first.index() < part.index())
+      return fmt::format("found '{}' again, which is ignored", name);
     double numbers[4];
     const auto count = static_cast<int>(known->second);
+    if (name == "team" && part.size() != 2)
+      return "expected (team Left) or (team Right), found another number of words";
     if (part.size() != known->second + 1 || (name != "team" && !readList(part, numbers, count)))
       return fmt::format("expected {} numbers of at most {} after {}, found something else, which is ignored", count,
                          kMaxNumber, name);
+    if (name == "battery" && (numbers[0] < 0 || numbers[0] > AgentState::kFullBattery))
+      return fmt::format("expected 0 to {} after battery, found {}: it is clamped", AgentState::kFullBattery,
+                         numbers[0]);
   }
   return {};
 }
@@ -173,7 +181,8 @@ std::string TrainerCommandParser::kickOff(const Element& c) {
 }
 
 std::string TrainerCommandParser::dropBall(const Element&) {
-  if (acts_ && match_.referee()) match_.referee()->dropBall(match_.game()->pitch().ballPosition());
+  if (!match_.referee()) return "there is no referee";
+  if (acts_) match_.referee()->dropBall(match_.game()->pitch().ballPosition());
   return {};
 }
 
@@ -208,6 +217,7 @@ const soccer::Player* TrainerCommandParser::selectedPlayer() {
 std::string TrainerCommandParser::agent(const Element& c) {
   const soccer::Pitch& pitch = match_.game()->pitch();
   if (isBare(c)) {
+    if (!selectedPlayer()) return kNoSuchPlayer;
     // Move the selected players away from where they are, towards their own end.
     const double distance = pitch.settings().freeKickMoveDist;
     for (const Player& p : pitch.players()) {
@@ -249,6 +259,7 @@ std::string TrainerCommandParser::select(const Element& c) {
     const Player* now = selectedPlayer();
     wanted = now && now != &players.back() ? now + 1 : &players.front();
   }
+  if (isBare(c) && !wanted) return kNoSuchPlayer;
   for (const Player& p : players)
     if (acts_ && p.state->selected() != (&p == wanted)) p.state->select(&p == wanted);
   return {};

@@ -307,6 +307,13 @@ TEST_CASE("a player can be paused, stepped, reversed, accelerated and moved to a
   for (const char* wild : {"(speed nan)", "(speed -1)", "(speed)", "(record)", "(record 1e30)", "(record (a))",
                            "(nosuch 1)", "(speed inf)", "garbage"})
     player.command(monitor, wild);
+  auto& server = player.kernel.root().require<IMonitorServer>();
+  const auto answer = [&server](const char* text) { return server.command("a test", text); };
+  CHECK(answer("(speed)") == "speed: expected a number of 0 or more");
+  CHECK(answer("(speed 500)") == "speed: expected at most 100, which it is now");
+  CHECK(answer("(p now)") == "p: expected no argument, found 1: the rest is ignored");
+  CHECK(answer("(time 3 4)") == "time: expected one argument, found 2: the rest is ignored");
+  CHECK(answer("(p)(record 3)(p)(speed 1)(l)(l)") == "");
   CHECK(player.at() <= 59);
   CHECK(getProperty(*player.player, "speed") == Value(1.0));
 }

@@ -187,10 +187,13 @@ TEST_CASE("commands act in the cycle after a due one in order of arrival, and in
   CHECK(stage.trainer->pushed.empty());
   stage.cycle();
   CHECK(stage.trainer->pushed == std::vector<std::int64_t>{1, 2, 3, 4, 5});
-  CHECK(stage.text.find("unknown command 'nosuchcommand' ignored") != std::string::npos);
-  CHECK(stage.text.find("found 'garbage'; ignored") != std::string::npos);
-  CHECK(stage.text.find("command 'push' ignored: expected a number, found none") != std::string::npos);
-  CHECK(stage.text.find("from client1: 1:") != std::string::npos);
+  for (const char* line :
+       {"command 'nosuchcommand' ignored: no trainer knows it", "command 'push' ignored: expected a number, found none",
+        "from client1: expected a command in parentheses, found 'garbage'",
+        "from client1: expected a command, found parentheses without a name", "from client1: 1:"}) {
+    INFO(line << "\n" << stage.text);
+    CHECK(count(stage.text, line) == 1);
+  }
   stage.monitor->received(a, "(push 6)");
   stage.cycle();  // a frame is due, but not the commands
   CHECK(stage.trainer->pushed.size() == 5);
@@ -232,7 +235,7 @@ TEST_CASE("commands from inside the host act like those of monitors, and their e
   CHECK(stage.server->command("the browser", flood).find("dropped") != std::string::npos);
 }
 
-TEST_CASE("an unknown command is answered with the nearest name, and logged at a limited rate for monitors") {
+TEST_CASE("an unknown command is answered with the nearest name, and logged once") {
   Stage stage;
   FakeConnection& a = stage.connect();
   CHECK(stage.server->command("the browser", "(pusch 3)") ==
@@ -244,15 +247,56 @@ TEST_CASE("an unknown command is answered with the nearest name, and logged at a
   CHECK(stage.server->command("the browser", "(pull 1)(reqfullstate)") == "");
   CHECK(stage.server->command("the browser", "(pull 1)(pul 2)") ==
         "there is no command 'pul' here. Did you mean 'pull'?");
+  CHECK(stage.server->command("the browser", "(pul 2)(pall 1)")
+            .find("'pul' here. Did you mean 'pull'?; there is no "
+                  "command 'pall'") != std::string::npos);
   CHECK(stage.server->command("the browser", "(killSim)") ==
         "there is no command 'killSim' here. Did you mean 'killsim'?");
   const Value text = "(pul 2)";
   CHECK_THROWS_WITH(callMethod(stage.node(), "command", std::span(&text, 1)), Catch::Contains("Did you mean 'pull'?"));
   stage.nextFrame();
   for (int i = 0; i < 400; ++i) stage.cycle();
-  for (int i = 0; i < 50; ++i) stage.monitor->received(a, "(pul 2)");
+  for (int i = 0; i < 50; ++i) stage.monitor->received(a, "(pol 2)");
   CHECK(count(stage.text, "from client1: there is no command") == 1);
   CHECK(a.sent == 1);
+}
+
+TEST_CASE("what is no command, or has more arguments than have an effect, is answered and logged once each") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  const auto [command, reason] = GENERATE(table<std::string, std::string>({
+      {"", "expected commands in parentheses, found none"},
+      {"  \n", "expected commands in parentheses, found none"},
+      {"push", "expected a command in parentheses, found 'push'"},
+      {"()", "expected a command, found parentheses without a name"},
+      {"(reqfullstate 1 2)", "reqfullstate: expected no arguments, found 2: they are ignored"},
+  }));
+  INFO(command);
+  stage.text.clear();
+  CHECK(stage.server->command("the browser", command) == reason);
+  for (int i = 0; i < 3; ++i) stage.monitor->received(a, command);
+  stage.nextFrame();
+  stage.nextFrame();
+  INFO(stage.text);
+  CHECK(count(stage.text, reason) == 1);
+  CHECK(count(stage.text, "\n") == 1);
+  CHECK(stage.server->command("the browser", "(init)(getAck x)(push 1)") == "");
+}
+
+TEST_CASE("a flood of mistakes is answered with some of them, and of many kinds the log has a limited number") {
+  Stage stage;
+  FakeConnection& a = stage.connect();
+  std::string flood;
+  for (int i = 0; i < 1000; ++i) flood += "x ";
+  CHECK(count(stage.server->command("the browser", flood), "expected a command") == 8);
+  CHECK(stage.server->command("the browser", flood).ends_with("; there are more mistakes"));
+  stage.text.clear();
+  for (int i = 0; i < 400; ++i) {
+    stage.monitor->received(a, "(nothing" + std::to_string(i) + ")");
+    if (i % 50 == 0) stage.nextFrame();
+  }
+  CHECK(count(stage.text, "no trainer knows it") < 200);
+  CHECK(count(stage.text, "No more mistakes in commands are logged.") == 1);
 }
 
 TEST_CASE("the transforms of a frame are those of the scene") {

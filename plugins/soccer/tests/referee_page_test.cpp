@@ -86,8 +86,15 @@ TEST_CASE("a command that has no effect, or ignores a part, is answered with the
       {"(kickOff Foo)", "expected Left, Right or None, found 'Foo'. The command is (kickOff Left|Right|None)"},
       {"(kickOff)", "expected Left, Right or None, found ''"},
       {"(playMode Goal_left)", "expected a play mode, found 'Goal_left'. Did you mean 'Goal_Left'?"},
-      {"(playMode PlayOn now)", "expected 1 arguments, found 2"},
+      {"(playMode PlayOn now)", "expected 1 argument, found 2: the rest is ignored"},
       {"(dropBall 1 2)", "expected 0 arguments, found 2"},
+      {"(kickOff Left Right)", "expected 1 argument, found 2"},
+      {"(time 5 6)", "expected 1 argument, found 2"},
+      {"(ball (pos 1 2 3)(pos 4 5 6))", "found 'pos' again, which is ignored"},
+      {"(score (left 1)(right 2)(left 3))", "found 'left' again, which is ignored"},
+      {"(kill (unum 1)(team Left) now)", "found 'now', which is ignored"},
+      {"(agent (unum 1)(team Left)(battery 500))", "expected 0 to 100 after battery, found 500: it is clamped"},
+      {"(agent (unum 1)(team Left Right)(pos 1 2 3))", "expected (team Left) or (team Right)"},
       {"(ball 1 2 3)", "expected (pos x y z) or (vel x y z)"},
       {"(ball (pos 1 2)(vel 1 0 0))", "expected 3 numbers"},
       {"(ball (pos 1 2 3)(speed 1))", "found 'speed', which is ignored"},
@@ -101,4 +108,13 @@ TEST_CASE("a command that has no effect, or ignores a part, is answered with the
   Page h;
   INFO(command);
   CHECK_THAT(h.check(command), Catch::Contains(reason));
+}
+
+TEST_CASE("commands about selected players are answered when none is selected", "[soccer]") {
+  Page h;
+  h.trainer("(select (unum -1))");
+  for (const char* command : {"(agent)", "(kill)", "(repos)"}) {
+    INFO(command);
+    CHECK_THAT(h.check(command), Catch::Contains("no such player"));
+  }
 }

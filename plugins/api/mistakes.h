@@ -1,18 +1,21 @@
 #pragma once
 /// \file
-/// The kinds of mistakes that an agent has made. Most mistakes are repeated in every cycle; the log names each kind
-/// once.
+/// The kinds of mistakes that an agent, or the sender of commands, has made. Most mistakes are repeated in every cycle;
+/// the log names each kind once.
 
 #include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
 
-namespace spark::gamecontrol {
+#include "spark/abi/api/mistakes.h"
 
-/// Remembers at most kMax kinds.
+namespace spark {
+
+/// Remembers at most kMax kinds. Any thread, one at a time.
 class Mistakes {
  public:
+  /// The number of kinds that it remembers.
   static constexpr std::size_t kMax = 200;
 
   /// The kind of a mistake about `subject`, usually a predicate, that `text` describes. Texts that differ only in
@@ -31,8 +34,11 @@ class Mistakes {
     return hash;
   }
 
+  /// True for a kind that was added.
   bool known(std::uint64_t kind) const { return std::binary_search(kinds_.begin(), kinds_.end(), kind); }
+  /// True if no more kinds can be added.
   bool full() const { return kinds_.size() >= kMax; }
+  /// Adds a kind, unless it is known or there is no room.
   void add(std::uint64_t kind) {
     if (!full() && !known(kind)) kinds_.insert(std::lower_bound(kinds_.begin(), kinds_.end(), kind), kind);
   }
@@ -46,4 +52,4 @@ class Mistakes {
   std::vector<std::uint64_t> kinds_;  ///< ascending
 };
 
-}  // namespace spark::gamecontrol
+}  // namespace spark
