@@ -42,9 +42,10 @@ std::optional<Actuator> ActuatorReader::read(const Element& e) {
   n.dynamicsNumbers = f.dynamicsNumbers, n.gain = f.gain, n.bias = f.bias;
   if (f.dynamics == "filterexact")
     unsupported_.add(e, fmt::format("{} has the dyntype filterexact: 'filter' is used in its place", e.named()));
-  if (const auto range = compiler_.limit(e, "actrange", f.activation)) n.activationRange = *range;
-  if (const auto range = compiler_.limit(e, "ctrlrange", f.control)) x.controlRange = *range;
-  if (const auto range = compiler_.limit(e, "forcerange", f.force)) x.forceRange = *range;
+  Attributes a(e, unsupported_);
+  if (const auto range = compiler_.limit(a, "actrange", f.activation)) n.activationRange = *range;
+  if (const auto range = compiler_.limit(a, "ctrlrange", f.control)) x.controlRange = *range;
+  if (const auto range = compiler_.limit(a, "forcerange", f.force)) x.forceRange = *range;
   return x;
 }
 

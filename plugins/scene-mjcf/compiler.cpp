@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 
 #include "robot/mended_numbers.h"
 
@@ -14,9 +15,24 @@ namespace {
 
 Mat3 turnTo(const Vec3& z) { return Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), z).toRotationMatrix(); }
 
+/// The same direction with a length whose square is a number; others keep their digits.
+Vec3 shortened(const Vec3& v) { return std::isfinite(v.squaredNorm()) ? v : v.stableNormalized(); }
+
+/// True for a vector that has a direction.
+bool isLong(const Vec3& v) { return v.stableNorm() > 1e-10; }
+
+/// An attribute that cannot be used is an error, or no rotation, which is named.
+Mat3 refuse(Attributes& a, const char* name, const std::string& expected) {
+  const std::string text = fmt::format("expected {} for '{}'", expected, name);
+  if (!a.isForgiving()) throw a.element().error(text);
+  a.note(fmt::format("'{}' of <{}> is ignored: {}", name, a.element().tag(), text));
+  return Mat3::Identity();
+}
+
 }  // namespace
 
 void Compiler::read(Attributes& a) {
+  a.forgive();
   degrees_ = a.word("angle", {"degree", "radian"}, degrees_ ? "degree" : "radian") == "degree";
   autolimits_ = a.flag("autolimits", autolimits_);
   eulerSequence_ = a.text("eulerseq", eulerSequence_.c_str());
@@ -27,7 +43,8 @@ void Compiler::read(Attributes& a) {
   while (folder.starts_with("./")) folder.erase(0, 2);
   meshFolder_ = folder;
   inertiaFromGeom_ = a.word("inertiafromgeom", {"auto", "true", "false"}, inertiaFromGeom_.c_str());
-  a.take("inertiagrouprange", inertiaGroups_);
+  if (std::array<double, 2> groups{}; a.take("inertiagrouprange", groups))
+    for (std::size_t i = 0; i < 2; ++i) inertiaGroups_[i] = static_cast<int>(std::clamp(groups[i], -1e9, 1e9));
   fitsBounds_ = a.flag("fitaabb", fitsBounds_);
   stripsPaths_ = a.flag("strippath", stripsPaths_);
   exactMeshInertia_ = a.flag("exactmeshinertia", exactMeshInertia_);
@@ -61,28 +78,28 @@ void Compiler::adjust(engine::Mass& mass) const {
 std::optional<Mat3> Compiler::orientation(Attributes& a) const {
   std::array<double, 4> four{};
   if (a.take("quat", four)) {
-    const Eigen::Quaterniond q(four[0], four[1], four[2], four[3]);
+    Eigen::Quaterniond q(four[0], four[1], four[2], four[3]);
+    if (!std::isfinite(q.squaredNorm())) q.coeffs() /= q.coeffs().cwiseAbs().maxCoeff();
     if (q.norm() > 1e-10) return q.normalized().toRotationMatrix();
     a.note(fmt::format("a 'quat' of 0 in <{}> is taken as no rotation", a.element().tag()));
     return Mat3::Identity();
   }
   if (a.take("axisangle", four)) {
     const Vec3 axis(four[0], four[1], four[2]);
-    if (!(axis.norm() > 1e-10)) throw a.element().error("expected an axis that is not 0 in 'axisangle'");
-    return Eigen::AngleAxisd(angle(four[3]), axis.normalized()).toRotationMatrix();
+    if (!isLong(axis)) return refuse(a, "axisangle", "an axis that is not 0");
+    return Eigen::AngleAxisd(angle(four[3]), shortened(axis).normalized()).toRotationMatrix();
   }
   std::array<double, 6> six{};
   if (a.take("xyaxes", six)) {
-    const Vec3 x = Vec3(six[0], six[1], six[2]).normalized(), along = Vec3(six[3], six[4], six[5]);
-    const Vec3 y = (along - x * x.dot(along)).normalized();
+    const Vec3 first = shortened({six[0], six[1], six[2]}), along = shortened({six[3], six[4], six[5]});
+    const Vec3 x = first.normalized(), y = along - x * x.dot(along);
+    if (!isLong(first) || !(y.norm() > 1e-10 * along.norm())) return refuse(a, "xyaxes", "two different directions");
     Mat3 r;
-    r << x, y, x.cross(y);
-    if (!r.allFinite()) throw a.element().error("expected two different directions in 'xyaxes'");
+    r << x, y.normalized(), x.cross(y.normalized());
     return r;
   }
   if (Vec3 z; a.take("zaxis", z)) {
-    if (!(z.norm() > 1e-10)) throw a.element().error("expected a direction that is not 0 in 'zaxis'");
-    return turnTo(z);
+    return isLong(z) ? turnTo(shortened(z)) : refuse(a, "zaxis", "a direction that is not 0");
   }
   if (Vec3 angles; a.take("euler", angles)) {
     if (eulerSequence_.find_first_not_of("xyzXYZ") != std::string::npos)
@@ -117,6 +134,8 @@ std::optional<Compiler::Span> Compiler::fromTo(Attributes& a, const Pose& frame)
   std::array<double, 6> ends{};
   if (!a.take("fromto", ends)) return std::nullopt;
   const Vec3 from(ends[0], ends[1], ends[2]), to(ends[3], ends[4], ends[5]);
+  if (!(from.cwiseAbs().maxCoeff() <= kPlaces.most && to.cwiseAbs().maxCoeff() <= kPlaces.most))
+    throw a.element().error(fmt::format("expected places at most {:g} m away for 'fromto'", kPlaces.most));
   const double length = (to - from).norm();
   if (!(length > 1e-10)) throw a.element().error("expected two different points in 'fromto'");
   return Span{compose(frame, {(from + to) / 2, turnTo(from - to)}), length};
@@ -127,14 +146,17 @@ void Limit::read(Attributes& a, const char* flag, const char* name) {
   if (auto found = a.numbers(name, 2, 2)) range = std::move(found);
 }
 
-std::optional<std::array<double, 2>> Compiler::limit(const Element& e, const char* name, const Limit& l) const {
+std::optional<std::array<double, 2>> Compiler::limit(Attributes& a, const char* name, const Limit& l) const {
   const std::array<double, 2> range = l.range ? std::array{(*l.range)[0], (*l.range)[1]} : std::array{0.0, 0.0};
   const bool on = l.word == "auto" ? autolimits_ && (range[0] != 0 || range[1] != 0) : l.word == "true";
   if (!on) return std::nullopt;
-  if (!(range[0] < range[1]))
-    throw e.error(
-        fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", name, e.tag()));
-  return range;
+  if (range[0] < range[1]) return range;
+  const std::string expected =
+      fmt::format("expected a lower and a higher number for '{}' of <{}>, which is limited", name, a.element().tag());
+  if (!a.isForgiving()) throw a.element().error(expected);
+  a.note(fmt::format("'{}' of <{}> is ignored: {}, found {:g} {:g}", name, a.element().tag(), expected, range[0],
+                     range[1]));
+  return std::nullopt;
 }
 
 }  // namespace spark::mjcf

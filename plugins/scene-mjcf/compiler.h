@@ -57,9 +57,9 @@ class Compiler {
   };
   /// nullopt where there is no `fromto`. Throws Error.
   std::optional<Span> fromTo(Attributes& a, const Pose& frame) const;
-  /// The range that `limit`, with the attribute `name` of `e`, sets; nullopt if it sets none. Throws Error if a limit
-  /// has no valid range.
-  std::optional<std::array<double, 2>> limit(const Element& e, const char* name, const Limit& limit) const;
+  /// The range that `limit`, with the attribute `name`, sets; nullopt if it sets none. Throws Error if a limit has no
+  /// valid range; where `a` forgives there is none then, which is named.
+  std::optional<std::array<double, 2>> limit(Attributes& a, const char* name, const Limit& limit) const;
 
  private:
   bool degrees_ = true;

@@ -58,7 +58,7 @@ void ConstraintReader::tendon(const Element& e, const std::vector<Element>& part
   t.springLength = a.number("springlength", -1);
   Limit limit;
   limit.read(a, "limited", "range");
-  if (const auto range = compiler_.limit(e, "range", limit)) t.limited = true, t.range = *range;
+  if (const auto range = compiler_.limit(a, "range", limit)) t.limited = true, t.range = *range;
   a.fill("solreflimit", t.limitSolref);
   a.fill("solimplimit", t.limitSolimp);
   a.fill("solreffriction", t.frictionSolref);

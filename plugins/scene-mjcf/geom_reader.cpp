@@ -77,10 +77,7 @@ std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& fram
   const bool ellipsoid = type == "ellipsoid";
   if (type != "plane" && type != "hfield" && !weightless && compiler_.weighs(g.group)) {
     const engine::Mass own = massOf(a, type, weight(), g);
-    if (own.mass > 0)
-      g.mass = moved(own, g.pose);
-    else
-      body.lacksMass = true;
+    if (own.mass > 0) g.mass = moved(own, g.pose);
   }
   if (ellipsoid) {
     // Engines other than MuJoCo have it as the hull of points on it, and no viewer shows it.

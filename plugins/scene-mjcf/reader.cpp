@@ -160,7 +160,7 @@ void Reader::content(const Element& parent, const Scope& scope) {
     else if (tag == "site")
       unsupported_.attempt(e, [&] { site(e, scope); });
     else if (tag == "inertial")
-      leaveOutBad(e, scope, [&] { inertial(e, scope); });
+      unsupported_.attempt(e, [&] { inertial(e, scope); });
     else if (!kNotSimulated.contains(tag))
       unsupported_.element(e);
   }
@@ -231,7 +231,6 @@ void Reader::inertial(const Element& e, const Scope& scope) {
   b.mass = m;
   b.inertiaAxes = scope.frame.rotation * turn;
   b.hasInertial = true;
-  if (!(m.mass > 0)) b.lacksMass = true;
   a.finish();
 }
 
@@ -295,7 +294,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   } else if (ball) {
     j.limited = false;
     if (limit.word == "true") a.note("a ball <joint> that is limited to 0 has no limit");
-  } else if (const auto range = compiler_.limit(e, "range", limit)) {
+  } else if (const auto range = compiler_.limit(a, "range", limit)) {
     j.limited = true;
     j.range = {inUnits((*range)[0]) - j.reference, inUnits((*range)[1]) - j.reference};
   }
@@ -305,7 +304,7 @@ Joint Reader::typedJoint(const Element& e, const Scope& scope) {
   j.stiffness = a.within("stiffness", 0, 0);
   j.springPosition = inUnits(a.number("springref", 0)) - j.reference;
   if (j.kind == JointKind::hinge || j.kind == JointKind::slide) readSpringDamper(a, j);
-  if (const auto range = compiler_.limit(e, "actuatorfrcrange", force)) {
+  if (const auto range = compiler_.limit(a, "actuatorfrcrange", force)) {
     j.maxForce = std::max(std::abs((*range)[0]), std::abs((*range)[1]));
     if ((*range)[0] != -(*range)[1])
       unsupported_.add(e, "an actuatorfrcrange that is not symmetric is taken as symmetric");
@@ -320,24 +319,21 @@ void Reader::readSpringDamper(Attributes& a, Joint& j) {
   std::array<double, 2> both{};
   a.fill("springdamper", both);
   if (both[0] == 0 && both[1] == 0) return;
-  if (!(both[0] > 0 && both[1] > 0)) throw a.element().error("expected two numbers above 0 for 'springdamper'");
+  if (!(both[0] > 0 && both[1] > 0))
+    return a.note(fmt::format("'springdamper' of <joint> is ignored: expected two numbers above 0, found {:g} {:g}",
+                              both[0], both[1]));
   j.springDamper = both;
-}
-
-/// For what gives its body a mass.
-void Reader::leaveOutBad(const Element& e, const Scope& scope, const std::function<void()>& read) {
-  if (!unsupported_.attempt(e, read)) model_.bodies[static_cast<std::size_t>(scope.body)].lacksMass = true;
 }
 
 void Reader::geom(const Element& e, const Scope& scope) {
   Body& b = model_.bodies[static_cast<std::size_t>(scope.body)];
   std::optional<Geom> g;
-  leaveOutBad(e, scope, [&] {
+  unsupported_.attempt(e, [&] {
     Attributes a = attributes(e, scope.childClass);
     g = geoms_.read(a, b, scope.frame);
   });
   if (!g || !g->isShape) model_.unsupportedGeoms.insert(e.node.attribute("name").value());
-  if (g) dropBadMass(*g, unsupported_);
+  if (g) mendMass(*g, unsupported_);
   if (g) b.geoms.push_back(std::move(*g));
 }
 
@@ -377,7 +373,7 @@ void Reader::finishMasses() {
     if (b.hasInertial && fromGeoms != "true")
       balanceInertia(b.mass, b.from, "the <inertial> of a <body>", unsupported_);
   }
-  weighLightBodies(model_, "a <body>", unsupported_, true);
+  weighLightBodies(model_, "a <body>", 0, unsupported_);
   scaleMasses();
   placeOpenFrames();
   setSpringDampers(model_, unsupported_);

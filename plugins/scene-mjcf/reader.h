@@ -45,7 +45,6 @@ class Reader {
   Joint freeJoint(const Element& e);
   Joint typedJoint(const Element& e, const Scope& scope);
   void readSpringDamper(Attributes& a, Joint& j);
-  void leaveOutBad(const Element& e, const Scope& scope, const std::function<void()>& read);
   void geom(const Element& e, const Scope& scope);
   void site(const Element& e, const Scope& scope);
   void finishMasses();

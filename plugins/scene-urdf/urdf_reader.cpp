@@ -76,7 +76,8 @@ mjcf::Model Reader::read() {
   readJoints();
   placeAll(rootLink());
   model_.surfaces = geometry_.surfaces();
-  mjcf::weighLightBodies(model_, "a <link>", unsupported_);  // links that only connect joints often have none
+  // Links that only connect joints often have none.
+  mjcf::weighLightBodies(model_, "a <link>", mjcf::kNextToNoMass, unsupported_);
   GazeboReader(root_, model_, unsupported_).apply();
   mjcf::mendNumbers(model_, unsupported_);
   AgentParts(root_, model_, unsupported_).add();

@@ -48,7 +48,6 @@ void GeometryReader::shape(const Node& node, const Frame& frame, mjcf::Body& bod
     auto shape = this->geometry(*geometry, standing, false);
     if (!shape) return;
     g.shape = std::move(*shape);
-    mjcf::dropBadMass(g, r_.unsupported);
     body.geoms.push_back(std::move(g));
   });
 }
@@ -79,6 +78,7 @@ void GeometryReader::addBounds(const Node& node, const Frame& around, std::optio
     // As in Webots, planes and grids have no mass.
     if (density && shape->shape != Shape::plane && node.type != "ElevationGrid")
       g.mass = mjcf::moved(massOf(*shape, {.density = *density, .mass = {}}, node), frame.pose);
+    mjcf::mendMass(g, r_.unsupported);
     g.shape = std::move(*shape);
     body.geoms.push_back(std::move(g));
   });

@@ -75,7 +75,7 @@ World Reader::read() {
   for (mjcf::Model& model : world_.models) {
     dropMovingPlanes(model, r_.unsupported);
     mjcf::mendNumbers(model, r_.unsupported);
-    mjcf::weighLightBodies(model, "a solid", r_.unsupported);
+    mjcf::weighLightBodies(model, "a solid", mjcf::kNextToNoMass, r_.unsupported);
     model.surfaces = geometry_.surfaces();
   }
   // The last one: the world is as before when another one cannot be built.

@@ -72,7 +72,7 @@ std::vector<BadFile> badMjcf() {
       {"absurd position", "s.xml", mjcf(ball + "\n<body pos='1e200 0 0'><joint/><geom size='1'/></body>"),
        "s.xml:", ""},
       {"absurd size", "s.xml", mjcf("<freejoint/>\n<geom size='-1'/>"), "s.xml:4:1: ", "above 0"},
-      {"no mass", "s.xml", mjcf("<freejoint/>"), "s.xml:3:1: ", "needs a mass above 0"},
+      {"no mass", "s.xml", mjcf("<freejoint/>"), "s.xml:3:1: ", "has no mass"},
       {"late error", "l.xml", mjcf(ball, "<actuator>\n<motor joint='none'/></actuator>"),
        "l.xml:4:1: ", "there is no joint 'none'"},
       {"too deep", "d.xml", mjcf(repeated(300, "<body>") + repeated(300, "</body>")), "d.xml:3:", "200 elements"},

@@ -136,18 +136,20 @@ void BodyBuilder::makeJoints(const PlacedBody& p) {
     return;
   }
   std::string parent = p.above == 0 ? "" : bodyPath(c_.bodies[p.above].node->name());
-  // A joint has one axis: between two of them there is a light body.
+  // A joint has one axis: between two of them there is a light body, which engines still compute with.
+  const double share = std::max(kBetween, kMasses.least / p.mass.mass);
   for (std::size_t k = 0; k + 1 < joints.size(); ++k) {
     const std::string name = c_.names.body(c_.top, fmt::format("{}-{}", p.body->name, k + 1), "between");
     Node& between = transformAt(name, bodyPose(p));
-    Leaf& connector = makeRigidBody(between, p, kBetween);
+    Leaf& connector = makeRigidBody(between, p, share);
     setProperty(connector, "connector", true);
     setPose(connector, bodyPose(p));
     makeJoint(p, joints[k], between, parent);
     parent = bodyPath(name);
   }
   if (joints.size() > 1)
-    setProperty(*p.node->child("body"), "mass", p.mass.mass * (1 - kBetween * static_cast<double>(joints.size() - 1)));
+    setProperty(*p.node->child("body"), "mass",
+                std::max(kMasses.least, p.mass.mass * (1 - share * static_cast<double>(joints.size() - 1))));
   makeJoint(p, joints.back(), *p.node, parent);
 }
 

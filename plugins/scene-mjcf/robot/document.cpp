@@ -296,6 +296,10 @@ double Attributes::within(const char* name, double otherwise, double least, doub
 
 int Attributes::integer(const char* name, int otherwise) {
   const double v = number(name, otherwise);
+  if (std::abs(v) > 1e9 && forgiving_) {
+    note(fmt::format("'{}' of <{}> is ignored: expected a whole number, found {:g}", name, element_.tag(), v));
+    return otherwise;
+  }
   if (std::abs(v) > 1e9)
     throw element_.error(fmt::format("expected a whole number for '{}' of <{}>, found {}", name, element_.tag(), v));
   if (v != std::floor(v))

@@ -13,7 +13,6 @@ namespace spark::mjcf {
 namespace {
 constexpr double kLightMass = 0.01, kLightRadius = 0.01;  // kg, m
 constexpr double kWater = 1000;                           // kg/m^3
-constexpr double kLeastMass = 1e-7;                       // kg; engines compute with no less
 // Moments below these are what rounding leaves, or too small for engines.
 constexpr double kLeastRatio = 1e-9;    // of the largest moment
 constexpr double kLeastRadius = 1e-5;   // m, of gyration
@@ -40,19 +39,17 @@ void mendInertia(engine::Mass& mass, const Element& from, const std::string& wha
   }
 }
 
-void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported, bool flawedOnly) {
+void weighLightBodies(Model& model, const std::string& what, double least, Unsupported& unsupported) {
   std::vector<double> masses(model.bodies.size(), 0.0);  // of what is fixed to a body that moves
   std::vector<std::size_t> carrier(model.bodies.size(), 0);
-  std::vector<bool> flawed(model.bodies.size(), false);
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     const Body& b = model.bodies[i];
     carrier[i] = b.joints.empty() ? carrier[static_cast<std::size_t>(b.parent)] : i;
     masses[carrier[i]] += b.mass.mass;
-    if (b.lacksMass) flawed[carrier[i]] = true;
   }
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     Body& b = model.bodies[i];
-    if (carrier[i] != i || masses[i] > (flawedOnly ? 0 : kLeastMass) || (flawedOnly && !flawed[i])) continue;
+    if (carrier[i] != i || masses[i] > least) continue;
     unsupported.add(b.from, fmt::format("{} that moves and has {} mass gets {} g", what,
                                         masses[i] > 0 ? "next to no" : "no", 1000 * kLightMass));
     b.mass = physics::sphereMass(kLightMass, kLightRadius);

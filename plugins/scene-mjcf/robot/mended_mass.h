@@ -19,9 +19,11 @@ void mendInertia(engine::Mass& mass, const Element& from, const std::string& wha
 /// The second of these alone, for any mass.
 void balanceInertia(engine::Mass& mass, const Element& from, const std::string& what, Unsupported& unsupported);
 
-/// Bodies that move and have no mass, or less than 0.1 mg, together with what is fixed to them, get 10 g, which is
-/// named in `unsupported`. `what`: "a <link>". `flawedOnly`: only where a part lacks a mass that the file would give
-/// it.
-void weighLightBodies(Model& model, const std::string& what, Unsupported& unsupported, bool flawedOnly = false);
+/// A mass that is as good as none, in files whose own programs compute with it [kg].
+inline constexpr double kNextToNoMass = 1e-7;
+
+/// Bodies that move and have, together with what is fixed to them, a mass of `least` or below get 10 g, which is named
+/// in `unsupported`. `what`: "a <link>".
+void weighLightBodies(Model& model, const std::string& what, double least, Unsupported& unsupported);
 
 }  // namespace spark::mjcf

@@ -66,7 +66,7 @@ void mendJoint(Joint& j, Unsupported& unsupported) {
     for (double& v : j.range) m.bound("a limit", v, kCoordinates);
   m.nearest("a reference", j.reference, kCoordinates);
   m.nearest("an armature", j.armature, kCoefficients);
-  m.nearest("a damping", j.damping, kCoefficients);
+  m.nearest("a damping", j.damping, j.kind == JointKind::free ? kBodyDamping : kCoefficients);
   m.nearest("a dry friction", j.dryFriction, kCoefficients);
   m.nearest("a stiffness", j.stiffness, kCoefficients);
   m.nearest("a spring's place", j.springPosition, kCoordinates);
@@ -102,19 +102,33 @@ void mendMass(engine::Mass& mass, const Element& from, Unsupported& unsupported)
   mass.inertia = sphereOfWater(mass.mass).inertia;
 }
 
-void dropBadMass(Geom& g, Unsupported& unsupported) {
-  if (!g.mass || g.mass->mass == 0) return;
-  if (isBounded(*g.mass)) return;
-  unsupported.add(g.from, fmt::format("{} has no mass: expected at most {:g} kg and {:g} kg m^2, found {:g} kg",
-                                      g.from.named(), kMasses.most, kMoments.most, g.mass->mass));
-  g.mass.reset();
+void mendMass(Geom& g, Unsupported& unsupported) {
+  if (!g.mass || g.mass->mass == 0 || isBounded(*g.mass)) return;
+  engine::Mass& m = *g.mass;
+  const auto say = [&](const std::string& what) { unsupported.add(g.from, g.from.named() + what); };
+  const std::string most = fmt::format("expected at most {:g} kg and {:g} kg m^2", kMasses.most, kMoments.most);
+  if (!std::isfinite(m.mass) || !m.inertia.allFinite()) {
+    say(fmt::format(" adds no mass to its body: {}, found {:g} kg and no finite inertia", most, m.mass));
+    g.mass.reset();
+  } else if (!isIn(m.center, kPlaces)) {
+    say(fmt::format(" adds no mass to its body: expected a place at most {:g} m away, found {:g} {:g} {:g} m",
+                    kPlaces.most, m.center.x(), m.center.y(), m.center.z()));
+    g.mass.reset();
+  } else {
+    const double found = m.mass, moment = m.inertia.cwiseAbs().maxCoeff();
+    const double factor = std::min(kMasses.most / found, kMoments.most / moment);
+    m.mass *= factor;
+    m.inertia *= factor;
+    say(fmt::format(", a mass of {:g} kg is taken as {:g} kg: {}, found {:g} kg m^2", found, m.mass, most, moment));
+  }
 }
 
 void mendNumbers(Model& model, Unsupported& unsupported) {
   for (std::size_t i = 1; i < model.bodies.size(); ++i) {
     Body& b = model.bodies[i];
     Mender(b.from, unsupported).place("its place", b.pose.position);
-    // What is fixed to a body may have an inertia of 0, and little mass.
+    // What is fixed to a body may have an inertia of 0, and little mass. Where nothing is, does not matter.
+    if (b.mass.mass == 0 && !isIn(b.mass.center, kPlaces)) b.mass.center.setZero();
     if (!isBounded(b.mass)) mendMass(b.mass, b.from, unsupported);
     for (Joint& j : b.joints) mendJoint(j, unsupported);
   }

@@ -15,6 +15,7 @@ inline constexpr Range kMoments{1e-30, 1e30};    ///< kg m^2
 inline constexpr Range kPlaces{-1e6, 1e6};       ///< m, in the frame around
 inline constexpr Range kCoordinates{-1e6, 1e6};  ///< of joints [rad or m]
 inline constexpr Range kCoefficients{0, 1e12};   ///< damping, stiffness, friction and rotors of joints, SI units
+inline constexpr Range kBodyDamping{0, 1e9};     ///< of a body that moves freely, SI units
 inline constexpr Range kGains{-1e12, 1e12};      ///< of actuators
 
 /// True for a mass and an inertia that a body may have, and a centre in its range.
@@ -24,8 +25,8 @@ bool isUsable(const engine::Mass& mass);
 /// named in `unsupported`.
 void mendMass(engine::Mass& mass, const Element& from, Unsupported& unsupported);
 
-/// A geom has no mass where that cannot be used, which is named.
-void dropBadMass(Geom& geom, Unsupported& unsupported);
+/// The same of a geom, whose mass and inertia are scaled to their most; it has none where that makes no number. Named.
+void mendMass(Geom& geom, Unsupported& unsupported);
 
 /// Brings all numbers of a model into their ranges and names those that were not, for any language: poses and masses of
 /// bodies, joints, actuators.

@@ -90,7 +90,6 @@ struct Body {
   bool isFrameOpen = false;                          ///< its frame is where its centre of mass is
   bool hasInertial = false;                          ///< an inertial element says so
   bool isWeighed = false;                            ///< the compiler counts the masses of some of its geoms
-  bool lacksMass = false;                            ///< what would give it some is left out, or gives none
   double gravityCompensation = 0;                    ///< part of the gravity that does not act on it
   std::vector<Joint> joints;
   std::vector<Geom> geoms;

@@ -49,13 +49,19 @@ TEST_CASE("a spring may be given by its time constant and damping ratio") {
   CHECK(r.body(1).joints[0].damping == Approx(30.0845).epsilon(1e-5));
   CHECK(r.body(2).joints[0].stiffness == Approx(23.5219).epsilon(1e-5));
   CHECK(r.body(2).joints[0].damping == Approx(2.35219).epsilon(1e-5));
-  CHECK_THAT(failure(world("<body><joint springdamper='0 1'/></body>")), Catch::Contains("two numbers above 0"));
+  CHECK_THAT(named(world("<body><joint springdamper='0 1'/></body>")), Catch::Contains("two numbers above 0"));
 }
 
 TEST_CASE("a limit needs a range, and options are checked") {
-  CHECK_THAT(failure(world("<body><joint limited='true'/></body>")),
-             Catch::StartsWith("a.xml:1:26: expected a lower and a higher number for 'range'"));
-  CHECK_THAT(failure(world("<body><joint range='2 1'/></body>")), Catch::StartsWith("a.xml:1:26: expected a lower"));
+  for (const char* const bad : {"limited='true'", "range='2 1'", "range='1 1' limited='true'"}) {
+    const Read r(world("<body><joint " + std::string(bad) + "/><geom size='1'/></body>"));
+    CHECK_FALSE(r.body(1).joints[0].limited);
+    CHECK_THAT(r.messages(), Catch::StartsWith("a.xml:1:26: 'range' of <joint> is ignored: expected a lower and a "
+                                               "higher number"));
+  }
+  const Read force(world("<body><joint actuatorfrcrange='3 -3'/><geom size='1'/></body>"));
+  CHECK(std::isinf(force.body(1).joints[0].maxForce));
+  CHECK_THAT(force.messages(), Catch::Contains("'actuatorfrcrange' of <joint> is ignored"));
   CHECK(Read("<mujoco><option density='-1' timestep='0' impratio='-1'/></mujoco>").model.options.size() == 1);
   CHECK(Read("<mujoco><option gravity='0 0 -9'/></mujoco>").model.options.size() == 1);
 }
@@ -98,7 +104,7 @@ TEST_CASE("limits are checked once all default classes are applied") {
     CHECK_FALSE(Read(model("<joint limited='true'/>", "limited='false'", "")).body(1).joints[0].limited);
     CHECK_FALSE(Read(model("", "range='0 0'", "")).body(1).joints[0].limited);
     CHECK_FALSE(Read(model("", "limited='false' range='2 1'", "")).body(1).joints[0].limited);
-    CHECK_THAT(failure(model("<joint limited='true'/>", "", "")), Catch::Contains("expected a lower and a higher"));
+    CHECK_THAT(named(model("<joint limited='true'/>", "", "")), Catch::Contains("expected a lower and a higher"));
     CHECK_THAT(named(model("", "", "<motor joint='j' ctrllimited='true'/>")),
                Catch::Contains("expected a lower and a higher number for 'ctrlrange' of <motor>"));
     CHECK_THAT(named(model("", "", "<position joint='j' forcelimited='true'/>")), Catch::Contains("'forcerange'"));
@@ -145,7 +151,8 @@ TEST_CASE("types of actuators change functions of their defaults as in MuJoCo 2.
 TEST_CASE("coordinates of joints count from the pose of the file") {
   const Read r(
       world("<body><joint ref='30' range='10 50' springref='20' stiffness='1'/>"
-            "<joint type='slide' ref='0.5' range='0 1' springref='0.25' stiffness='1'/><joint range='10 50'/></body>"));
+            "<joint type='slide' ref='0.5' range='0 1' springref='0.25' stiffness='1'/><joint range='10 50'/><geom "
+            "size='1'/></body>"));
   const std::vector<Joint>& j = r.body(1).joints;
   CHECK(j[0].reference == Approx(degToRad(30)));
   CHECK(j[0].range[0] == Approx(degToRad(-20)));

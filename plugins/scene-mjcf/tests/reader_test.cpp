@@ -124,7 +124,18 @@ TEST_CASE("a number that cannot be read, or with which no engine computes, costs
        "<body>, a mass of 1e+300 is taken as 1e+15"},
       {"<body><joint/><inertial pos='0 0 0' mass='0' diaginertia='0 0 0'/></body>",
        "a <body> that moves and has no mass gets 10 g"},
-      {"<body><joint/><geom size='1'/><geom size='1e8'/></body>", "<geom> has no mass: expected at most 1e+15 kg"},
+      {"<body><joint/><geom size='1'/><geom size='1e8'/></body>",
+       "<geom>, a mass of 4.18879e+27 kg is taken as 2.5e+14 kg: expected at most 1e+15 kg and 1e+30 kg m^2"},
+      {"<body><joint/><geom size='1' density='1e300'/></body>", "is taken as 1e+15 kg: expected at most"},
+      {"<body><joint/><geom size='1e200' mass='1'/></body>",
+       "<geom> adds no mass to its body: expected at most 1e+15 kg"},
+      {"<body><joint/><geom size='1' fromto='0 0 0 0 0 1e200' type='capsule'/></body>",
+       "<geom> is left out: expected places at most 1e+06 m away for 'fromto'"},
+      {"<body><joint/><geom size='1' mass='0'/></body>", "a <body> that moves and has no mass gets 10 g"},
+      {"<body zaxis='0 0 0'/>", "'zaxis' of <body> is ignored: expected a direction that is not 0"},
+      {"<body axisangle='0 0 0 1'/>", "'axisangle' of <body> is ignored: expected an axis that is not 0"},
+      {"<frame xyaxes='1 0 0 -2 0 0'/>", "'xyaxes' of <frame> is ignored: expected two different directions"},
+      {"<body><freejoint/><joint type='free' damping='1e10'/></body>", "a damping of 1e+10 is taken as 1e+09"},
   };
   for (const auto& [content, message] : cases) {
     const std::string messages = named(world(content));
@@ -132,6 +143,8 @@ TEST_CASE("a number that cannot be read, or with which no engine computes, costs
     CHECK(messages.find(message) != std::string::npos);
   }
   CHECK(Read(world("<body><joint axis='0 1e308 0'/><geom size='1'/></body>")).body(1).joints[0].axis.y() == 1);
+  for (const char* const half : {"quat='0 0 1e300 0'", "axisangle='0 1e300 0 180'", "zaxis='1e-300 0 -1e300'"})
+    CHECK(Read(world("<body " + std::string(half) + "/>")).body(1).pose.rotation(2, 2) == Approx(-1));
 }
 
 TEST_CASE("a value that MuJoCo takes does not cost the model; what is made of it is named") {
@@ -147,7 +160,9 @@ TEST_CASE("a value that MuJoCo takes does not cost the model; what is made of it
        "'damping' of <joint> is taken as 0: expected 0 to inf, found -2"},
       {"<geom size='1' solmix='-1'/>", "'solmix' of <geom> is taken as 0"},
       {"<geom size='1' friction='1 -1 0'/>", "'friction' of <geom> below 0 is taken as 0"},
-      {"<geom size='1' margin='-0.1' gap='-0.1'/><body><joint margin='-0.1' limited='true' range='0 1'/></body>", ""},
+      {"<geom size='1' margin='-0.1' gap='-0.1'/><body><joint margin='-0.1' limited='true' range='0 1'/><geom "
+       "size='1'/></body>",
+       ""},
       {"<body><joint damping='1e-400'/><geom size='1'/></body>", ""},
       {"<body quat='0 0 0 2'/>", ""},
   };
@@ -216,7 +231,7 @@ TEST_CASE("a body has the mass of what is not left out, or 10 g") {
   const Read light = body(bad);
   CHECK(light.body(1).mass.mass == Approx(0.01));
   CHECK_THAT(light.messages(), Catch::Contains("a.xml:1:20: a <body> that moves and has no mass gets 10 g"));
-  CHECK(body("<geom size='1' mass='0'/>").body(1).mass.mass == 0);  // as the file says
+  CHECK(body("<geom size='1' mass='0'/>").body(1).mass.mass == Approx(0.01));
 }
 
 TEST_CASE("a model that is nested too deeply is refused") {
