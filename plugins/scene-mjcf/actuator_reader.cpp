@@ -1,6 +1,7 @@
 #include "actuator_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -11,6 +12,16 @@ namespace {
 /// In MuJoCo the actuators of all tags share one default, so each tag's elements of a default class apply to all.
 constexpr std::string_view kTags[] = {"general", "motor",    "position", "velocity", "intvelocity",
                                       "damper",  "cylinder", "muscle",   "adhesion"};
+
+/// Throws Error for numbers of a muscle that MuJoCo does not take.
+void checkMuscle(const Element& e, const std::array<double, 10>& n) {
+  const bool positive = n[3] > 0 && n[6] > 0 && n[7] > 0 && n[8] > 0;
+  if (!(n[0] < n[1] && positive && n[4] < 1 && n[5] > 1))
+    throw e.error(fmt::format(
+        "expected a lower and a higher number for the range, scale, vmax, fpmax and fvmax above 0, and lmin "
+        "below and lmax above 1, found {:g}",
+        fmt::join(n.begin(), n.begin() + 9, " ")));
+}
 
 }  // namespace
 
@@ -31,6 +42,8 @@ std::optional<Actuator> ActuatorReader::read(const Element& e) {
     unsupported_.add(e, refused);
     return std::nullopt;
   }
+  if (f.gainType == "muscle") checkMuscle(e, f.gain);
+  if (f.biasType == "muscle") checkMuscle(e, f.bias);
   // Limits count once all defaults are applied.
   x.gear = f.gear[0];
   const bool affine = f.gainType == "affine";

@@ -41,6 +41,13 @@ engine::Mesh ellipsoidMesh(const Vec3& half) {
   return mesh;
 }
 
+int dimensionsOf(Attributes& a) {
+  const int condim = a.integer("condim", 3);
+  if (condim != 1 && condim != 3 && condim != 4 && condim != 6)
+    throw a.element().error(fmt::format("expected 1, 3, 4 or 6 for 'condim', found {}", condim));
+  return condim;
+}
+
 std::optional<Geom> GeomReader::read(Attributes& a, Body& body, const Pose& frame) {
   Geom g;
   g.from = a.element();
@@ -118,9 +125,7 @@ void GeomReader::contact(Attributes& a, Geom& g) const {
     a.note("'friction' of <geom> below 0 is taken as 0");
     for (double& f : m.friction) f = std::max(f, 0.0);
   }
-  m.condim = a.integer("condim", 3);
-  if (m.condim != 1 && m.condim != 3 && m.condim != 4 && m.condim != 6)
-    throw g.from.error(fmt::format("expected 1, 3, 4 or 6 for 'condim', found {}", m.condim));
+  m.condim = dimensionsOf(a);
   m.priority = a.integer("priority", 0);
   a.fill("solref", m.solref);
   a.fill("solimp", m.solimp);

@@ -10,6 +10,9 @@
 
 namespace spark::mjcf {
 
+/// The attribute `condim` of a geom or a pair, 3 where it is not there. Throws Error for one that MuJoCo does not have.
+int dimensionsOf(Attributes& a);
+
 /// Reads geoms: their shapes, their masses and their numbers of contacts. Its parts must outlive it.
 class GeomReader {
  public:

@@ -420,7 +420,7 @@ void Reader::contact(const Element& e) {
     model_.exclusions.push_back({e, a.text("body1"), a.text("body2")});
   } else {
     Pair p{e, a.text("geom1"), a.text("geom2")};
-    if (a.has("condim")) p.condim = a.integer("condim", 3);
+    if (a.has("condim")) p.condim = dimensionsOf(a);
     const auto fill = [&](const char* name, auto& numbers, auto usual) {
       if (a.has(name)) a.fill(name, numbers.emplace(usual));
     };

@@ -106,6 +106,9 @@ void ActuatorBuilder::makeEngineActuator(const Actuator& x) {
     const Construction::MadeJoint& joint = c_.joints.find(x.joint)->second;
     settings.emplace_back("target", "../" + joint.made->leaf().parent()->name() + "/" + joint.made->leaf().name());
     offset = n.gear[0] * joint.joint->reference;
+    const bool muscle = n.gainType == "muscle" || n.biasType == "muscle";
+    if (muscle && !joint.joint->limited && !(n.lengthRange[0] < n.lengthRange[1]))
+      throw x.from.error("expected a 'lengthrange' of the muscle, or a limit of the joint that it moves");
   }
   auto gain = n.gain, bias = n.bias;
   if (n.gainType == "affine") gain[0] += gain[1] * offset;
