@@ -26,7 +26,7 @@ inline constexpr std::string_view kSet{"set"};
 inline constexpr std::string_view kCall{"call"};
 /// n, number of the subscription, path, channel, whether the host waits for its handlers.
 inline constexpr std::string_view kListen{"listen"};
-/// number of the event, what the handlers answer (nil: nothing).
+/// number of the event, what the handlers answer (nil: nothing), whether one failed (may be missing: no).
 inline constexpr std::string_view kDone{"done"};
 /// number of a message kScene that it has handled.
 inline constexpr std::string_view kHandled{"handled"};

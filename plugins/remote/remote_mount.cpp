@@ -447,6 +447,7 @@ void RemoteMount::pass(const List& event) {
     return lose("it sent an event that is not understood");
   const std::int64_t number = event[1].toInteger();
   Value answers(List{});
+  const std::int64_t faults = kernel().faults();
   const auto at = listeners_.find(static_cast<std::uint64_t>(event[2].toInteger()));
   if (at != listeners_.end() && at->second.node)
     at->second.channel->emitAt(*at->second.node, {.name = at->second.channel->name(),
@@ -455,7 +456,7 @@ void RemoteMount::pass(const List& event) {
                                                   .cycle = event[5].toInteger(),
                                                   .data = event[6].isNil() ? nullptr : &event[6],
                                                   .answer = event[7].toBool() ? &answers : nullptr});
-  if (number != 0) send({kDone, number, answers});
+  if (number != 0) send({kDone, number, answers, kernel().faults() != faults});
 }
 
 }  // namespace spark

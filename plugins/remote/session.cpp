@@ -121,6 +121,7 @@ void Session::handle(std::string_view bytes, std::string_view token) {
   if (kind == kDone) {
     done_ = numberAt(message, 1);
     reply_ = message.size() > 2 ? message[2] : Value();
+    replyFails_ = message.size() > 3 && at(message, 3, Value::Type::boolean).toBool();
     return;
   }
   answer(message);
@@ -225,10 +226,14 @@ void Session::pass(std::uint64_t number, bool waits, const Event& event) {
           event.answer != nullptr});
     if (!wire_->flush()) return lose("the connection is broken");
   }
-  if (asked == 0) return;
   reply_ = {};
-  await(asked);
-  if (done_ != asked || !event.answer || !reply_.isList()) return;
+  replyFails_ = false;
+  if (asked != 0) await(asked);
+  if (!waits || !event.answer) return;
+  // An answer that is late, or that a handler there failed to give, is a fault as that of a handler here.
+  const bool isAnswered = asked != 0 && done_ == asked && reply_.isList();
+  if (!isAnswered || replyFails_) host_.server.kernel().countFault();
+  if (!isAnswered) return;
   for (Value& one : reply_.toList())  // of one handler each
     if (event.answer->isList())
       event.answer->toList().push_back(std::move(one));

@@ -95,6 +95,7 @@ class Session {
   std::map<std::uint64_t, Listener> listeners_;  ///< by the remote host's number
   std::uint64_t asked_ = 0, done_ = 0;           ///< numbers of the last event that is awaited, and that was answered
   Value reply_;                                  ///< what each of its handlers answered
+  bool replyFails_ = false;                      ///< one of its handlers failed
   std::int64_t lateEvents_ = 0;
   bool open_ = false;      ///< it has said hello
   bool ready_ = false;     ///< it has said so
