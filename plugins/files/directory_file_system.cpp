@@ -80,7 +80,7 @@ std::optional<std::string> DirectoryFileSystem::read(const std::string& resource
 
 std::uint64_t DirectoryFileSystem::stamp(const std::string& resource) {
   if (path_.empty() || !resource.starts_with(prefix_)) return 0;
-  const fs::path file = fs::path(path_) / resource.substr(prefix_.size());
+  const std::string file = path_ + '/' + resource.substr(prefix_.size());
   struct stat s {};
   if (::stat(file.c_str(), &s) != 0 || !S_ISREG(s.st_mode)) return 0;
 

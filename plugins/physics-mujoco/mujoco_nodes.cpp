@@ -15,7 +15,7 @@ void MujocoSurface::describe(Description<MujocoSurface>& d) {
       .doc("Factor of sliding friction; torsional and rolling friction [m].");
   d.property("condim", &S::get<&N::condim>, &S::setCondim).doc("Dimensions of a contact: 1, 3, 4 or 6.");
   d.property("priority", &S::get<&N::priority>, &S::set<&N::priority>)
-      .doc("Of two surfaces that of higher priority counts.");
+      .doc("Of two surfaces that of higher priority counts; colliders without one have the lowest.");
   d.property("solref", &S::get<&N::solref>, &S::set<&N::solref>)
       .doc("Time constant [s] and damping ratio of contacts; or, negative, stiffness and damping.");
   d.property("solimp", &S::get<&N::solimp>, &S::set<&N::solimp>)

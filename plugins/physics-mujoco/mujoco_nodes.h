@@ -14,10 +14,11 @@ namespace mujoco {
 /// The surface of a collider (MuJoCo's documentation, "Contact").
 struct SurfaceNumbers {
   static constexpr std::string_view kKind = "MujocoSurface";
-  std::array<double, 3> friction{1, 0.005, 0.0001};        ///< sliding; torsional and rolling [m]
-  std::int64_t condim = 3;                                 ///< dimensions of a contact: 1, 3, 4 or 6
-  std::int64_t priority = 0;                               ///< of two surfaces that of higher priority counts
-  std::array<double, 2> solref{0.02, 1};                   ///< time constant [s], damping ratio
+  static constexpr std::int64_t kNoSurface = -1'000'000;
+  std::array<double, 3> friction{1, 0.005, 0.0001};  ///< sliding; torsional and rolling [m]
+  std::int64_t condim = 3;                           ///< dimensions of a contact: 1, 3, 4 or 6
+  std::int64_t priority = kNoSurface;     ///< of two surfaces that of higher priority counts; a MujocoSurface has 0
+  std::array<double, 2> solref{0.02, 1};  ///< time constant [s], damping ratio
   std::array<double, 5> solimp{0.9, 0.95, 0.001, 0.5, 2};  ///< impedance: from, to, width [m], midpoint, power
   double margin = 0, gap = 0;  ///< distance at which contacts begin, and that part of it without force [m]
   double solmix = 1;           ///< weight of solref and solimp against those of another surface
@@ -69,6 +70,7 @@ struct OptionNumbers {
 class MujocoSurface : public engine::Extension<mujoco::SurfaceNumbers> {
   SPARK_CLASS(MujocoSurface, Leaf)
  public:
+  MujocoSurface() { set<&mujoco::SurfaceNumbers::priority>(0); }
   static void describe(Description<MujocoSurface>& d);
 
  private:

@@ -209,12 +209,13 @@ void Run::import(const Statement& s, Leaf& node, const List& arguments) {
 }
 
 std::string Run::resourceOf(const std::string& file) const {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(program_.resource).parent_path();
-  if (folder.empty() || fs::path(file).is_absolute()) return file;
-  std::string beside = (folder / file).lexically_normal().generic_string();
+  const std::size_t folder = program_.resource.rfind('/') + 1;
+  if (folder == 0 || file.starts_with('/')) return file;
+  std::string beside = program_.resource.substr(0, folder) + file;
+  if (file.find("..") != std::string::npos) beside = std::filesystem::path(beside).lexically_normal().generic_string();
+  if (beside.starts_with("..") || beside.starts_with('/')) return file;
   auto* const files = importer_.kernel().root().find<IFileServer>();
-  return files && !beside.starts_with("..") && !beside.starts_with("/") && files->exists(beside) ? beside : file;
+  return files && files->exists(beside) ? beside : file;
 }
 
 void Run::attachScript(Leaf& node, const List& arguments) {

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <vector>
@@ -46,7 +47,9 @@ bool isOutsideLoaded(const Elf64_Phdr& p, const std::vector<Elf64_Phdr>& segment
 /// The contents of the loaded segments.
 class Contents {
  public:
-  Contents(int file, const std::vector<Elf64_Phdr>& segments) : file_(file), segments_(segments) {}
+  Contents(int file, const std::vector<Elf64_Phdr>& segments) : file_(file), segments_(segments) {
+    for (const Elf64_Phdr& p : segments) end_ = std::max(end_, p.p_offset + p.p_filesz);
+  }
 
   /// Reads `count` objects at an address. Returns false unless one segment of the file contains all of them.
   template <class T>
@@ -55,13 +58,38 @@ class Contents {
       if (p.p_type != PT_LOAD || count > p.p_filesz || !within(address, count * sizeof(T), p.p_vaddr, p.p_filesz))
         continue;
       to.resize(count);
-      return readAt(file_, p.p_offset + (address - p.p_vaddr), to.data(), count);
+      return readBytes(p.p_offset + (address - p.p_vaddr), reinterpret_cast<char*>(to.data()), count * sizeof(T));
     }
     return false;
   }
 
  private:
+  /// A part of the file. Tables are read an entry at a time, some of them in turns.
+  struct Block {
+    std::uint64_t begin = 0;
+    std::vector<char> bytes;
+  };
+  static constexpr std::uint64_t kBlock = 1 << 16;
+
+  bool readBytes(std::uint64_t at, char* to, std::uint64_t size) const {
+    if (size > kBlock) return readAt(file_, at, to, size);
+    for (std::uint64_t n = 0; size > 0; at += n, to += n, size -= n) {
+      const std::uint64_t begin = at - at % kBlock;
+      Block& block = blocks_[begin / kBlock % blocks_.size()];
+      if (block.bytes.empty() || block.begin != begin) {
+        block.bytes.resize(std::min(kBlock, end_ - begin));
+        block.begin = begin;
+        if (!readAt(file_, begin, block.bytes.data(), block.bytes.size())) return block.bytes.clear(), false;
+      }
+      n = std::min(size, begin + block.bytes.size() - at);
+      std::copy_n(block.bytes.data() + (at - begin), n, to);
+    }
+    return true;
+  }
+
   int file_;
+  std::uint64_t end_ = 0;  ///< of the last segment, in the file
+  mutable std::array<Block, 16> blocks_;
   const std::vector<Elf64_Phdr>& segments_;
 };
 

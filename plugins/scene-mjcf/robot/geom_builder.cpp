@@ -90,7 +90,8 @@ bool isPlain(ContactNumbers m) {
 void setContact(Node& collider, const Geom& g) {
   const ContactNumbers& m = g.contact;
   const bool isEllipsoid = g.ellipsoid[0] > 0;
-  if (Leaf* const numbers = m == ContactNumbers() && !isEllipsoid ? nullptr : extensionOf(collider, "MujocoSurface")) {
+  // Also usual numbers: they count where a collider has none.
+  if (Leaf* const numbers = extensionOf(collider, "MujocoSurface")) {
     const bool isLost = isEllipsoid || !isPlain(m);
     setWritten(*numbers, isLost ? "what a contact has beside sliding friction: " + g.from.placed() : "");
     setProperty(*numbers, "friction", toList(m.friction));
