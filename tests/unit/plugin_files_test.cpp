@@ -154,6 +154,10 @@ TEST_CASE("A file whose relocations, versions or hash tables are damaged is refu
       r = at(Elf64_Rela(), last);
       r.r_info ^= 0x80;
       write(last, r);
+      // The first one may be relative. The linker looks at its symbol, too.
+      r = at(Elf64_Rela(), section.sh_offset);
+      r.r_info ^= std::uint64_t{1} << 50;
+      write(section.sh_offset, r);
     } else if (section.sh_type == SHT_GNU_verneed) {
       auto library = at(Elf64_Verneed(), section.sh_offset);
       library.vn_file ^= 0x100;
@@ -195,6 +199,40 @@ TEST_CASE("A file whose relocations, versions or hash tables are damaged is refu
   library.vn_file = 0;  // no library's name
   put(behind, versions.sh_offset, library);
   writeAll(behind);
+  // What the linker calls is code: functions, and the entries of arrays, which relocations change.
+  const auto dynamicAt = [&](Elf64_Sxword tag) {
+    std::size_t i = dynamic.sh_offset;
+    while (at(Elf64_Dyn(), i).d_tag != tag) REQUIRE((i += sizeof(Elf64_Dyn)) < end);
+    return i;
+  };
+  for (const Elf64_Sxword tag : {DT_INIT, DT_FINI}) write(dynamicAt(tag), entry(tag, dynamic.sh_addr));
+  for (const Elf64_Sxword tag : {DT_INIT_ARRAYSZ, DT_FINI_ARRAYSZ}) {
+    write(dynamicAt(tag), entry(tag, 16 * sizeof(Elf64_Addr)));
+    write(dynamicAt(tag), entry(DT_DEBUG, 0));
+  }
+  write(dynamicAt(DT_RELA), entry(DT_DEBUG, 0));
+  write(dynamicAt(DT_VERSYM), entry(DT_DEBUG, 0));
+  // Packed relocations: an address, and the next 63 words; they lie behind the end of the dynamic section.
+  const auto packed = [&](std::initializer_list<Elf64_Addr> words) {
+    constexpr Elf64_Sxword kRelrSize = 35, kRelr = 36, kRelrEntry = 37;
+    std::size_t to = end + 4 * sizeof(Elf64_Dyn);
+    REQUIRE(to + words.size() * sizeof(Elf64_Addr) <= dynamic.sh_offset + dynamic.sh_size);
+    std::string bytes = whole;
+    put(bytes, end, entry(kRelr, dynamic.sh_addr + (to - dynamic.sh_offset)));
+    put(bytes, end + sizeof(Elf64_Dyn), entry(kRelrSize, words.size() * sizeof(Elf64_Addr)));
+    put(bytes, end + 2 * sizeof(Elf64_Dyn), entry(kRelrEntry, sizeof(Elf64_Addr)));
+    for (const Elf64_Addr word : words) {
+      put(bytes, to, word);
+      to += sizeof word;
+    }
+    return bytes;
+  };
+  const Elf64_Addr room = dynamic.sh_addr + dynamic.sh_size - 2 * sizeof(Elf64_Addr);  // the linker does not read it
+  fs::create_directory(folder.path() / "packed");
+  overwrite(folder.path() / "packed" / "packed.so", packed({room, 3}));
+  writeAll(packed({0}));                                                         // what is not written to
+  writeAll(packed({Elf64_Addr{1} << 40}));                                       // outside
+  writeAll(packed({at(Elf64_Dyn(), dynamicAt(DT_INIT_ARRAY)).d_un.d_val + 1}));  // bits without an address
   // More relocations are relative than the first ones; the last entry with a tag counts.
   const auto relocations = sectionOf(SHT_RELA);
   write(end, entry(DT_RELACOUNT, relocations.sh_size / sizeof(Elf64_Rela)));
@@ -229,13 +267,17 @@ TEST_CASE("A file whose relocations, versions or hash tables are damaged is refu
   writeAll(older({1, 3, 3, 0, 0, 0}));         // a symbol that does not exist
   writeAll(older({1, 3, 2, 0, 2, 1}));         // a list without end
   writeAll(older({1, 1u << 30, 2, 0, 0, 1}));  // larger than the file
-  REQUIRE(written == 27);
+  REQUIRE(written == 40);
 
   for (const char* name : {"behind.so", "older.so"}) {
     TestHost other(false);
     CHECK(other.kernel.plugins().useFile(intact.path() / name).registered());
   }
+  // The linker takes packed relocations only of libraries that need a version of it that has them.
   TestHost host(false);
+  const auto packedProblems = host.kernel.plugins().scan(folder.path() / "packed");
+  CHECK(packedProblems.size() <= 1);
+  for (const std::string& problem : packedProblems) CHECK_THAT(problem, !Catch::Contains("its headers are damaged"));
   const auto problems = host.kernel.plugins().scan(folder.path());
   for (const std::string& problem : problems) CHECK_THAT(problem, Catch::Contains("its headers are damaged"));
   CHECK(problems.size() == written);

@@ -98,10 +98,13 @@ class Contents {
 struct Table {
   Elf64_Sxword address, size;
 };
+// Packed relative relocations (System V gABI, chapter 5); the headers of older systems do not name them.
+constexpr Elf64_Sxword kRelrSize = 35, kRelr = 36, kRelrEntry = 37;
 constexpr Table kTables[] = {{DT_STRTAB, DT_STRSZ},
                              {DT_SYMTAB, DT_NULL},
                              {DT_RELA, DT_RELASZ},
                              {DT_JMPREL, DT_PLTRELSZ},
+                             {kRelr, kRelrSize},
                              {DT_HASH, DT_NULL},
                              {DT_GNU_HASH, DT_NULL},
                              {DT_PLTGOT, DT_NULL},
@@ -121,7 +124,7 @@ class DynamicSection {
 
   bool isDamaged() {
     return !hasRequired() || !sizesAgree() || !tablesLoaded() || !namesFit() || !versionsFit() || !relocationsFit() ||
-           !gnuHashFits() || !hashFits();
+           !callsFit() || !gnuHashFits() || !hashFits();
   }
 
  private:
@@ -135,16 +138,21 @@ class DynamicSection {
   bool isAbsentOr(Elf64_Sxword tag, std::uint64_t expected) const { return !has(tag) || value(tag) == expected; }
   bool isAbsentOrMultiple(Elf64_Sxword tag, std::uint64_t size) const { return !has(tag) || value(tag) % size == 0; }
 
-  /// True if names and symbols exist, and each table of relocations has a size and a kind.
+  /// True if names and symbols exist, each table has the size that belongs to it, relocations have a kind, and symbols
+  /// have versions where there are any.
   bool hasRequired() const {
-    return has(DT_STRTAB) && has(DT_STRSZ) && has(DT_SYMTAB) &&
-           (!has(DT_RELA) || (has(DT_RELASZ) && has(DT_RELAENT))) &&
-           (!has(DT_JMPREL) || (has(DT_PLTRELSZ) && has(DT_PLTREL)));
+    const bool areComplete = std::all_of(std::begin(kTables), std::end(kTables), [&](const Table& t) {
+      return t.size == DT_NULL || has(t.address) == has(t.size) || (!has(t.address) && value(t.size) == 0);
+    });
+    return areComplete && has(DT_STRTAB) && has(DT_SYMTAB) && (!has(DT_RELA) || has(DT_RELAENT)) &&
+           (!has(DT_JMPREL) || has(DT_PLTREL)) && (has(DT_VERSYM) || !(has(DT_VERNEED) || has(DT_VERDEF))) &&
+           (!has(kRelr) || has(kRelrEntry));
   }
   /// True if entries have the sizes of this machine, and tables contain complete entries.
   bool sizesAgree() const {
     return isAbsentOr(DT_SYMENT, sizeof(Elf64_Sym)) && isAbsentOr(DT_RELAENT, sizeof(Elf64_Rela)) &&
-           isAbsentOr(DT_PLTREL, DT_RELA) && isAbsentOrMultiple(DT_RELASZ, sizeof(Elf64_Rela)) &&
+           isAbsentOr(DT_PLTREL, DT_RELA) && isAbsentOr(kRelrEntry, sizeof(Elf64_Addr)) &&
+           isAbsentOrMultiple(kRelrSize, sizeof(Elf64_Addr)) && isAbsentOrMultiple(DT_RELASZ, sizeof(Elf64_Rela)) &&
            isAbsentOrMultiple(DT_PLTRELSZ, sizeof(Elf64_Rela)) &&
            isAbsentOrMultiple(DT_INIT_ARRAYSZ, sizeof(Elf64_Addr)) &&
            isAbsentOrMultiple(DT_FINI_ARRAYSZ, sizeof(Elf64_Addr)) &&
@@ -204,11 +212,13 @@ class DynamicSection {
     }
     return true;
   }
-  /// True if a symbol that the linker uses has a name and a version, and is code if the linker calls it.
+  /// True if a symbol that the linker uses has a name and a version, and is code if the linker calls it. Only the first
+  /// one, which is none, is a local one of nowhere.
   bool symbolFits(std::uint64_t index) {
     std::vector<Elf64_Sym> symbol;
     if (!contents_.read(value(DT_SYMTAB) + index * sizeof(Elf64_Sym), 1, symbol) || symbol[0].st_name >= names_.size())
       return false;
+    if (index != 0 && symbol[0].st_shndx == SHN_UNDEF && ELF64_ST_BIND(symbol[0].st_info) == STB_LOCAL) return false;
     if (symbol[0].st_shndx != SHN_UNDEF && ELF64_ST_TYPE(symbol[0].st_info) == STT_GNU_IFUNC &&
         !isLoaded(symbol[0].st_value, 0, PF_X))
       return false;
@@ -253,7 +263,8 @@ class DynamicSection {
     return true;
   }
   bool relocationsFit() {
-    return relocationsFit(DT_RELA, DT_RELASZ) && relocationsFit(DT_JMPREL, DT_PLTRELSZ) && relativesFit();
+    return relocationsFit(DT_RELA, DT_RELASZ) && relocationsFit(DT_JMPREL, DT_PLTRELSZ) && relativesFit() &&
+           packedFit();
   }
   /// True if the relocations that the linker takes for relative ones are.
   bool relativesFit() const {
@@ -267,6 +278,52 @@ class DynamicSection {
     return true;
 #endif
   }
+  /// True if packed relocations change writable memory: an even word is an address, the bits of an odd one say which of
+  /// the next 63 words change.
+  bool packedFit() {
+    std::vector<Elf64_Addr> words;
+    if (!has(kRelr)) return true;
+    if (!contents_.read(value(kRelr), value(kRelrSize) / sizeof(Elf64_Addr), words)) return false;
+    Elf64_Addr next = 0;
+    const auto change = [&](Elf64_Addr at) {
+      std::vector<Elf64_Addr> function;
+      if (isInArray(at)) {
+        if (!contents_.read(at, 1, function) || !isLoaded(function[0], 0, PF_X)) return false;
+        changed_.push_back(at);
+      }
+      return isLoaded(at, sizeof(Elf64_Addr), has(DT_TEXTREL) ? 0 : PF_W);
+    };
+    for (const Elf64_Addr word : words) {
+      if (word % 2 == 0) {
+        if (!change(word)) return false;
+        next = word + sizeof(Elf64_Addr);
+        continue;
+      }
+      for (Elf64_Addr bits = word >> 1, at = next; bits != 0; bits >>= 1, at += sizeof(Elf64_Addr))
+        if (bits % 2 == 1 && !change(at)) return false;
+      next += 63 * sizeof(Elf64_Addr);
+    }
+    return true;
+  }
+  /// True for an address in the arrays of functions that the linker calls.
+  bool isInArray(Elf64_Addr at) const {
+    const auto isIn = [&](Elf64_Sxword begin, Elf64_Sxword size) {
+      return has(begin) && has(size) && at >= value(begin) && at - value(begin) < value(size);
+    };
+    return isIn(DT_INIT_ARRAY, DT_INIT_ARRAYSZ) || isIn(DT_FINI_ARRAY, DT_FINI_ARRAYSZ);
+  }
+  /// True if what the linker calls is code: an array's addresses are those of the file until a relocation changes them.
+  bool callsFit() {
+    const auto isCode = [&](Elf64_Sxword tag) { return !has(tag) || isLoaded(value(tag), 0, PF_X); };
+    std::sort(changed_.begin(), changed_.end());
+    const auto areChanged = [&](Elf64_Sxword begin, Elf64_Sxword size) {
+      for (Elf64_Addr i = 0; has(begin) && i < value(size); i += sizeof(Elf64_Addr))
+        if (!std::binary_search(changed_.begin(), changed_.end(), value(begin) + i)) return false;
+      return true;
+    };
+    return isCode(DT_INIT) && isCode(DT_FINI) && areChanged(DT_INIT_ARRAY, DT_INIT_ARRAYSZ) &&
+           areChanged(DT_FINI_ARRAY, DT_FINI_ARRAYSZ);
+  }
   /// True if the relocations of a table change writable memory by what exists. What they point to is not followed,
   /// unless it is called.
   bool relocationsFit(Elf64_Sxword table, Elf64_Sxword size) {
@@ -278,12 +335,11 @@ class DynamicSection {
   bool relocationFits(const Elf64_Rela& r) {
 #ifdef __x86_64__
     if (!isLoaded(r.r_offset, sizeof(Elf64_Addr), has(DT_TEXTREL) ? 0 : PF_W)) return false;
+    // The linker looks at the symbol of each kind.
+    if (!symbolFits(ELF64_R_SYM(r.r_info))) return false;
     const auto target = static_cast<std::uint64_t>(r.r_addend);
-    const auto isIn = [&](Elf64_Sxword begin, Elf64_Sxword size) {
-      return has(begin) && has(size) && within(r.r_offset, 0, value(begin), value(size)) &&
-             r.r_offset != value(begin) + value(size);
-    };
-    const bool isCalled = isIn(DT_INIT_ARRAY, DT_INIT_ARRAYSZ) || isIn(DT_FINI_ARRAY, DT_FINI_ARRAYSZ);
+    const bool isCalled = isInArray(r.r_offset);
+    if (isCalled) changed_.push_back(r.r_offset);
     switch (ELF64_R_TYPE(r.r_info)) {
       case R_X86_64_RELATIVE:
         return !isCalled || isLoaded(target, 0, PF_X);
@@ -296,11 +352,12 @@ class DynamicSection {
       case R_X86_64_DTPOFF64:
       case R_X86_64_TPOFF64:
       case R_X86_64_TLSDESC:
-        return symbolFits(ELF64_R_SYM(r.r_info));
+        return true;
       default:
         return ELF64_R_TYPE(r.r_info) == R_X86_64_NONE;
     }
 #else
+    if (isInArray(r.r_offset)) changed_.push_back(r.r_offset);
     return r.r_offset != 0;
 #endif
   }
@@ -310,6 +367,7 @@ class DynamicSection {
   const std::vector<Elf64_Phdr>& segments_;
   Contents contents_;
   std::vector<char> names_;
+  std::vector<Elf64_Addr> changed_;  ///< addresses in arrays of functions that relocations change
   unsigned lastVersion_ = VER_NDX_GLOBAL;
 };
 }  // namespace
