@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "api/credentials.h"
 #include "api/removal.h"
@@ -224,7 +225,7 @@ void Session::pass(std::uint64_t number, bool waits, const Event& event) {
     feed(asked != 0);
     send({kEvent, asked, number, event.time, event.step, event.cycle, event.data ? *event.data : Value(),
           event.answer != nullptr});
-    if (!wire_->flush()) return lose("the connection is broken");
+    if (!wire_->flush()) lose("the connection is broken");
   }
   reply_ = {};
   replyFails_ = false;
@@ -232,13 +233,23 @@ void Session::pass(std::uint64_t number, bool waits, const Event& event) {
   if (!waits || !event.answer) return;
   // An answer that is late, or that a handler there failed to give, is a fault as that of a handler here.
   const bool isAnswered = asked != 0 && done_ == asked && reply_.isList();
-  if (!isAnswered || replyFails_) host_.server.kernel().countFault();
+  if (!isAnswered || replyFails_)
+    fail(event, isAnswered ? "its handlers failed there" : "it came too late or not at all");
   if (!isAnswered) return;
   for (Value& one : reply_.toList())  // of one handler each
     if (event.answer->isList())
       event.answer->toList().push_back(std::move(one));
     else
       *event.answer = std::move(one);
+}
+
+/// Each event may fail; the log has the first one.
+void Session::fail(const Event& event, std::string_view why) {
+  Kernel& kernel = host_.server.kernel();
+  kernel.countFault();
+  if (!std::exchange(saidFailure_, true))
+    kernel.log().warning("{}: an answer to '{}' from remote host {} counts as a fault: {}", host_.server.path(),
+                         event.name, name_, why);
 }
 
 /// Answers requests until the remote handlers are done with an event.

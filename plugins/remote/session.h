@@ -80,6 +80,7 @@ class Session {
   void listen(const List& message);
   void pass(std::uint64_t number, bool waits, const Event& event);
   void await(std::uint64_t event);
+  void fail(const Event& event, std::string_view why);
   void note(Input::Kind kind, std::string_view text);
   void send(const List& message);
   void feed(bool now);
@@ -96,6 +97,7 @@ class Session {
   std::uint64_t asked_ = 0, done_ = 0;           ///< numbers of the last event that is awaited, and that was answered
   Value reply_;                                  ///< what each of its handlers answered
   bool replyFails_ = false;                      ///< one of its handlers failed
+  bool saidFailure_ = false;                     ///< the log has an answer that is missing or failed
   std::int64_t lateEvents_ = 0;
   bool open_ = false;      ///< it has said hello
   bool ready_ = false;     ///< it has said so

@@ -212,7 +212,7 @@ std::string Run::resourceOf(const std::string& file) const {
   const std::size_t folder = program_.resource.rfind('/') + 1;
   if (folder == 0 || file.starts_with('/')) return file;
   std::string beside = program_.resource.substr(0, folder) + file;
-  if (file.find("..") != std::string::npos) beside = std::filesystem::path(beside).lexically_normal().generic_string();
+  if (file.find("./") != std::string::npos) beside = std::filesystem::path(beside).lexically_normal().generic_string();
   if (beside.starts_with("..") || beside.starts_with('/')) return file;
   auto* const files = importer_.kernel().root().find<IFileServer>();
   return files && files->exists(beside) ? beside : file;

@@ -103,6 +103,16 @@ TEST_CASE("with looseImports a failing import within a file is logged with the c
   CHECK(h.failure("(importScene b.rsg)").find("c.rsg:2:3: there is no class 'Missing'") != std::string::npos);
 }
 
+TEST_CASE("a file beside the importing one has one name, however it is written") {
+  SceneHost h;
+  h.set("looseImports", true);
+  h.write("d/c.rsg", "(RSG 0 1)\n((nd Missing))");
+  h.write("d/b.rsg", "(RSG 0 1)\n((importScene ./c.rsg)(importScene x/.././c.rsg)(importScene ././c.rsg))");
+  h.run("(importScene d/b.rsg)");
+  CHECK(h.logged("the import of 'd/c.rsg' failed"));
+  CHECK_FALSE(h.logged("./c.rsg"));
+}
+
 TEST_CASE("missing or surplus arguments do not change the values of other parameters and definitions") {
   SceneHost h;
   const std::string body = "(templ $a $b)(def $c 3)(def $d 4)(nd Probe (tell $a)(tell $c)(tell $d))";

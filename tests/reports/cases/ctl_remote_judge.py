@@ -63,3 +63,5 @@ for mode, rate in ("grants", "max"), ("fails", "max"), ("endless", "max"), ("lat
     with Folder() as folder, Served(folder, SERVED % rate) as served:
         with Mounted(folder, served, MOUNTED % (mode, mode, mode), "--rate", rate, "--duration", "600") as host:
             list(host.lines())
+        said = served.stop()[1].count("counts as a fault")
+        judge(f"{mode}: the log says {int(mode != 'grants')} times why, it is {said}", said == (mode != "grants"))
