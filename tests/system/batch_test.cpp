@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 #include <sstream>
 
 #include "process.h"
@@ -223,6 +224,36 @@ TEST_CASE("An interrupted batch ends its running simulations, keeps their rows, 
   const Finished again = runToEnd(batch(config, broken, few));
   REQUIRE(again.code == 2);
   REQUIRE_THAT(again.errors, Contains("--resume"));
+}
+
+TEST_CASE("A batch is not resumed with anything else than it was begun with, but with more runs") {
+  TemporaryFolder folder;
+  const std::string config = folder.write("match.lua", kMatch), text = kMatch,
+                    other = folder.write("other.lua", text + "\n"), results = folder.file("table.jsonl"),
+                    scenes = folder.path().string();
+  const std::vector<std::string> begun = with(kTwoTeams, {"--duration", "0.1"});
+  REQUIRE(runToEnd(batch(config, results, with(begun, {"--runs", "1"}))).code == 0);
+  const auto differs = [&](const std::string& configNow, const std::vector<std::string>& more) {
+    const Finished f = runToEnd(batch(configNow, results, with(more, {"--resume", "--runs", "1"})));
+    std::smatch words;
+    std::regex_search(f.errors, words, std::regex(" is of another batch: its (.*?) is "));
+    return f.code == 2 && !words.empty() ? words.str(1) : "not refused: " + f.errors;
+  };
+  CHECK(differs(other, begun) == "config");
+  CHECK(differs(config, with(kTwoTeams, {"--duration", "0.2"})) == "duration");
+  CHECK(differs(config, with(begun, {"--seed", "9"})) == "first seed");
+  CHECK(differs(config, with(begun, {"--set", "Soccer.GoalWidth=3"})) == "settings");
+  CHECK(differs(config, with(begun, {"--sweep", "Soccer.GoalWidth=2,3"})) == "sweep");
+  CHECK(differs(config, with(begun, {"--report", "now=/sys/server/simulation.time"})) == "reports");
+  CHECK(differs(config, with(begun, {"--scene-path", scenes})) == "scene paths");
+  CHECK(differs(config, with(begun, {"--plugin-path", scenes})) == "plugin paths");
+  folder.write("match.lua", text + "\n");
+  CHECK(differs(config, begun) == "config's text (hash)");
+  folder.write("match.lua", text);
+  const Finished more = runToEnd(batch(config, results, with(begun, {"--resume", "--runs", "2"})));
+  CAPTURE(more.errors);
+  CHECK(more.code == 0);
+  CHECK(rowsOf(results).size() == 2);
 }
 
 TEST_CASE("SIGTERM abandons the running simulations") {

@@ -160,6 +160,14 @@ TEST_CASE("A game with perceptors, effectors, rule and players in Lua alone is p
   CHECK(play("8")["stateHash"] != result["stateHash"]);
 }
 
+TEST_CASE("Each bout of a game in Lua has its own limit of time, after which it is a draw") {
+  const Finished run = runToEnd(luaSumo({"--set", "bouts=4", "--set", "limit=0.5"}));
+  INFO(run.errors);
+  REQUIRE(run.code == 0);
+  for (int bout = 1; bout <= 4; ++bout)
+    CHECK_THAT(run.errors, Contains("bout " + std::to_string(bout) + " took 0.50 s: 0:0"));
+}
+
 TEST_CASE("An agent over TCP plays against one inside in a game in Lua") {
   Process host(luaSumo({"--sync", "--set", "players=1", "--set", "bouts=2", "--set", "limit=5"}));
   Client agent(Json::parse(host.line())["agentPort"].get<unsigned short>());

@@ -77,6 +77,35 @@ TEST_CASE("A file is written by one at a time") {
   CHECK_NOTHROW(outputs::check(file, "the log"));
 }
 
+TEST_CASE("A file that is replaced keeps its permissions, a new one has the usual ones") {
+  const Rules rules;
+  test::TemporaryFolder folder;
+  const auto modeOf = [](const std::string& file) {
+    struct stat about = {};
+    REQUIRE(::stat(file.c_str(), &about) == 0);
+    return about.st_mode & 0777;
+  };
+  const mode_t before = ::umask(022);
+  const auto write = [](const std::string& file) {
+    FileDraft draft(file, "the table", true);
+    draft.write("draft");
+    draft.finish();
+  };
+  write(folder.file("new"));
+  CHECK(modeOf(folder.file("new")) == 0644);
+  outputs::setReplace(true);
+  for (const mode_t mode : {0600u, 0640u, 0664u}) {
+    const std::string file = folder.write("a", "old");
+    REQUIRE(::chmod(file.c_str(), mode) == 0);
+    write(file);
+    CHECK(textOf(file) == "draft");
+    CHECK(modeOf(file) == mode);
+    OutputFile(file, "the log").write("log");
+    CHECK(modeOf(file) == mode);
+  }
+  ::umask(before);
+}
+
 TEST_CASE("A draft appears as a whole, or not, and leaves nothing and no other file behind") {
   test::TemporaryFolder folder;
   const std::string file = folder.file("a");

@@ -149,6 +149,34 @@ TEST_CASE("the number of shapes and points is limited, and space is released aga
   CHECK(board.show("d", std::vector<Drawing>(DrawBoard::kMaxShapes + 5, point(1))) == 5);
 }
 
+TEST_CASE("whatever is removed, shown or not, makes room for as many points again") {
+  DrawBoard board;
+  Drawing large;
+  large.kind = Drawing::Kind::polygon;
+  large.points.resize(255);
+  const auto fill = [&] {  // the number of polygons for which there is room
+    std::size_t n = 0;
+    while (board.add("set" + std::to_string(n % 5), large)) ++n;
+    return n;
+  };
+  const std::size_t most = fill();
+  REQUIRE(most > 20);
+  CHECK(fill() == 0);  // it is full
+  board.clear();       // what was not shown
+  CHECK(fill() == most);
+  board.swap("");
+  board.clear();  // what was shown
+  CHECK(fill() == most);
+  board.swap(""), board.swap("");
+  CHECK(fill() == most);
+  board.clear();
+  CHECK(board.show("d", std::vector<Drawing>(most, large)) == 0);
+  CHECK(board.show("d", {}) == 0);
+  board.setAgentText(label(1, "text"));
+  board.setAgentText(label(1, ""));
+  CHECK(fill() == most);
+}
+
 TEST_CASE("sets that show nothing make room for others") {
   DrawBoard board;
   for (std::size_t i = 0; i < DrawBoard::kMaxSets; ++i) REQUIRE(board.show(std::to_string(i), {point(1)}) == 0);

@@ -1,9 +1,11 @@
 #include <atomic>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <thread>
 
 #include "api/appearance.h"
+#include "api/control.h"
 #include "api/monitor.h"
 #include "api/phases.h"
 #include "fake_scene.h"
@@ -70,6 +72,23 @@ class StillClock : public Node, public ISimulation {
   bool lockstep() const override { return false; }
   bool paced() const override { return false; }
   void setPaced(bool) override {}
+};
+
+/// Answers requests to watch, has another value each time, and counts how often it is asked for those of two paths.
+class Values : public Node, public IRequests {
+  SPARK_CLASS(Values, Node)
+ public:
+  static void describe(Description<Values>& d) { d.implements<IRequests>(); }
+  std::string answer(std::string_view request, control::Watch& watch, bool) override {
+    watch.path = Json::parse(request)["path"].get<std::string>();
+    watch.started = true;
+    return R"({"ok":true})";
+  }
+  std::string nextOf(control::Watch& watch, bool&) override {
+    ++(watch.path == "/leaver" ? leavers : stayers);
+    return Json{{"ok", true}, {"text", watch.path}}.dump();
+  }
+  std::atomic<int> leavers{0}, stayers{0};
 };
 
 /// A simulation with a moving robot; its cycles run in a separate thread until stop().
@@ -230,6 +249,33 @@ TEST_CASE("An event has the time of its frame even if it is sent late, and betwe
   const Json goal = jsonWith(viewer, "\"goal\""), between = jsonWith(viewer, "\"between\"");
   CHECK(goal["time"].get<double>() == Approx(now + 1).margin(0.01));
   CHECK(between["time"].get<double>() == Approx(now + 2).margin(0.01));
+}
+
+TEST_CASE("What a viewer watches is asked for until it leaves, and no more") {
+  RunningServer server;
+  Values* values = nullptr;
+  server.pauseAndServe([&] {
+    server.kernel.registerClass<Values>();
+    values = &server.kernel.create<Values>("Values", IRequests::kPath);
+  });
+  std::optional<WebClient> leaver(std::in_place, server.port);
+  WebClient stayer(server.port);
+  REQUIRE(leaver->watch() == 101);
+  REQUIRE(stayer.watch() == 101);
+  leaver->say(R"({"do":"watch","id":1,"path":"/leaver","property":"p"})");
+  stayer.say(R"({"do":"watch","id":2,"path":"/stayer","property":"p"})");
+  // How often the first one was asked for when the other one was asked for `more` times.
+  const auto afterLooks = [&](int more) {
+    for (const int end = values->stayers + more; values->stayers < end;) std::this_thread::yield();
+    return values->leavers.load();
+  };
+  leaver->textWith("/leaver");
+  const int once = afterLooks(2);
+  CHECK(afterLooks(3) > once);
+  leaver.reset();
+  while (Json::parse(WebClient::status(server.port))["spectators"] != 1) std::this_thread::yield();
+  const int last = afterLooks(2);
+  CHECK(afterLooks(3) == last);
 }
 
 TEST_CASE("A changed scene is sent again before its first frame") {

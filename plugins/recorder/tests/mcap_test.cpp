@@ -142,6 +142,34 @@ TEST_CASE("Any byte may be wrong: no crash, and what is read is what was written
   }
 }
 
+TEST_CASE("A chunk of a few bytes that would become very many is not read, another one beside it is") {
+  std::string out;
+  Writer w([&out](std::string_view bytes) { out += bytes; }, "test");
+  const std::uint16_t a = w.channel({0, "/a", "raw"});
+  const auto chunk = [&](Time time, const std::string& data) {
+    w.message(a, time, data);
+    w.endChunk();
+  };
+  std::string noise;  // that compresses badly
+  for (std::uint32_t i = 0, x = 1; i < 1u << 20; ++i) noise += static_cast<char>((x = x * 1664525 + 1013904223) >> 24);
+  chunk(0, std::string(17u << 20, 'x'));  // into about 2 KB
+  chunk(1, std::string(15u << 20, 'x'));
+  chunk(2, std::string(16u << 20, 'x') + noise);
+  w.finish();
+  const File file(out);
+  Reader r(file.name);
+  REQUIRE(r.lacks().empty());
+  std::vector<std::pair<Time, std::size_t>> read;
+  for (const Reader::Chunk& c : r.chunks())
+    r.forEach(c, [&](const Message& m) {
+      read.emplace_back(m.time, m.data.size());
+      return true;
+    });
+  CHECK(read == std::vector<std::pair<Time, std::size_t>>{{1, 15u << 20}, {2, 17u << 20}});
+  REQUIRE(r.lacks().size() == 1);
+  CHECK_THAT(r.lacks()[0], Contains("its size is too large"));
+}
+
 TEST_CASE("What is no recording is refused") {
   const File empty(""), text("this is no recording at all, it is a text");
   CHECK_THROWS_WITH(Reader(empty.name), Contains("is no recording: expected an MCAP file"));

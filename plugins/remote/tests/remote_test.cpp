@@ -454,6 +454,45 @@ TEST_CASE("Hosts without the token, and those that are none, lose their own conn
   CHECK(getProperty(good.mount->require<Leaf>("sys/server/simulation"), "step") == Value(0.02));
 }
 
+TEST_CASE("A number means one subscription: a second one with it is refused, and events come once") {
+  Served a("127.0.0.1:0");
+  a.host.kernel.create("Node", "/usr/one");
+  boost::asio::io_context io;
+  remote::Wire::Socket socket(io);
+  const auto port = static_cast<unsigned short>(std::stoi(remote::Address::read(a.address()).port));
+  socket.connect(boost::asio::ip::tcp::endpoint(boost::asio::ip::make_address("127.0.0.1"), port));
+  remote::Wire wire(std::move(socket), "tester");
+  auto& source = *a.server->as<IInputSource>();
+  // The answers to requests up to `last`, and the subscriptions whose events came before the last one.
+  std::vector<List> answers;
+  std::vector<std::int64_t> told;
+  const auto serve = [&](std::int64_t last) {
+    while (answers.empty() || answers.back()[1] != Value(last)) {
+      wire.flush();
+      source.poll();
+      wire.receive();
+      while (const auto bytes = wire.take()) {
+        const List m = remote::decode(*bytes);
+        if (m[0] == Value(remote::kEvent)) told.push_back(m[2].toInteger());
+        if (m[0] == Value(remote::kOk) || m[0] == Value(remote::kError)) answers.push_back(m);
+      }
+    }
+  };
+  wire.send({remote::kHello, remote::kProtocol, kToken, "tester", "/"});
+  wire.send({remote::kListen, 1, 7, "usr/one", "first", false});
+  wire.send({remote::kListen, 2, 7, "usr/one", "second", false});
+  wire.send({remote::kListen, 3, 8, "usr/one", "second", false});
+  serve(3);
+  REQUIRE(answers.size() == 3);
+  CHECK(answers[0][0] == Value(remote::kOk));
+  CHECK(answers[1] == List{remote::kError, 2, "subscription 7 exists"});
+  CHECK(answers[2][0] == Value(remote::kOk));
+  for (const char* channel : {"first", "second"}) a.host.kernel.events().channel(channel).emit({});
+  wire.send({remote::kGet, 4, "usr/one", "name"});
+  serve(4);
+  CHECK(told == std::vector<std::int64_t>{7, 8});
+}
+
 TEST_CASE("What a remote host says is put on the tape, but its token is not") {
   Served a("127.0.0.1:0");
   const test::FakeTape& tape = test::FakeTape::in(a.host.kernel);

@@ -143,6 +143,9 @@ TEST_CASE("types of actuators change functions of their defaults as in MuJoCo 2.
   const Read filtered = read("<general dyntype='filter'/>", "<general name='g' joint='j'/>");
   CHECK(filtered.model.actuators.at(0).engine.dynamics == "filter");
   CHECK(filtered.messages().empty());
+  const Read exact = read("", "<general name='g' joint='j' dyntype='filterexact'/>");
+  CHECK(exact.model.actuators.at(0).engine.dynamics == "filter");
+  CHECK_THAT(exact.messages(), Catch::Contains("<general> 'g' has the dyntype filterexact: 'filter' is used"));
   const Read unknown = read("", "<general name='g' joint='j' dyntype='user'/>");
   CHECK(unknown.model.actuators.empty());
   CHECK_THAT(unknown.messages(), Catch::Contains("<general> 'g' has the dyntype 'user', which is not supported"));

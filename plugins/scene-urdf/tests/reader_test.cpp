@@ -325,6 +325,25 @@ TEST_CASE("What Gazebo says about links and joints acts") {
   CHECK(still.body("a").joints.empty());
 }
 
+TEST_CASE("Every kind of sensor of Gazebo has the rate of its file, and none without one") {
+  for (const char* type : {"imu", "ray", "gpu_ray", "lidar", "gpu_lidar", "camera", "depth", "depth_camera", "rgbd",
+                           "rgbd_camera", "contact", "sonar", "gps", "navsat"}) {
+    CAPTURE(type);
+    const auto rates = [&](const std::string& content) {
+      const Read r(robot("<link name='a'>" + kMass + "</link><gazebo reference='a'><sensor name='s' type='" + type +
+                         "'>" + content + "</sensor></gazebo>"));
+      CHECK(r.messages() == "");
+      std::vector<double> all;
+      for (const mjcf::Sensor& s : r.model.sensors) all.push_back(s.rate);
+      return all;
+    };
+    const std::vector<double> with = rates("<update_rate>10</update_rate>"), without = rates("");
+    REQUIRE(!with.empty());
+    CHECK(with == std::vector<double>(with.size(), 10));
+    CHECK(without == std::vector<double>(with.size(), 0));
+  }
+}
+
 namespace {
 
 std::string first(std::string_view words) { return std::string(words.substr(0, words.find(' '))); }

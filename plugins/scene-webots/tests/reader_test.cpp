@@ -246,6 +246,26 @@ TEST_CASE("A part that means nothing is left out, and named with its place") {
   names("Solid { translation 1e300 0 0 }", "expected a place at most 1e+06 m away; 0 0 0 is taken");
 }
 
+TEST_CASE("A motor's targets count as in the file, whatever the position of its joint there is") {
+  const auto ranges = [](const std::string& parameters, const std::string& motor) {
+    const Read r(world("Robot { children HingeJoint { jointParameters HingeJointParameters { " + parameters +
+                       " } device RotationalMotor { " + motor +
+                       " } endPoint Solid { name \"arm\" physics Physics { "
+                       "mass 1 } boundingObject Box { } } } physics Physics { mass 1 } boundingObject Box { } }"));
+    const mjcf::Model& m = r.model("robot");
+    REQUIRE(m.actuators.size() == 3);
+    return std::array{m.actuators[0].controlRange, r.body("arm").joints.at(0).range};
+  };
+  using Range = std::array<double, 2>;
+  const Range all{-HUGE_VAL, HUGE_VAL};
+  // Stops bound the targets; the joint's coordinate is 0 in the pose of the file, a target is not.
+  CHECK(ranges("minStop -1 maxStop 2", "")[0] == Range{-1, 2});
+  CHECK(ranges("position 0.5 minStop -1 maxStop 2", "") == std::array{Range{-1, 2}, Range{-1.5, 1.5}});
+  CHECK(ranges("position 0.5 minStop -1 maxStop 2", "minPosition -0.25 maxPosition 1")[0] == Range{-0.25, 1});
+  CHECK(ranges("position 0.5", "minPosition -0.25 maxPosition 1")[0] == Range{-0.25, 1});
+  CHECK(ranges("position 0.5", "")[0] == all);
+}
+
 TEST_CASE("Fields and nodes that nothing has heard of are named") {
   // "..." is where the field stands.
   for (const std::string around :

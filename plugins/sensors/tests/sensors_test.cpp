@@ -332,6 +332,12 @@ TEST_CASE("a sonar reports the echo targets in its cone, nearest first, without 
   put("Transform", "behind", {0, -1, 0}, "Post");
   put("Transform", "far", {0, 5.1f, 0}, "Post");
   CHECK(robot.sense(sonar) == "(US Left (0.25 2.24 3.00 5.00))");
+  // Targets come and go.
+  Node& newcomer = put("AgentAspect", "newcomer", {0, 1.5f, 0}, "Post");
+  CHECK(robot.sense(sonar) == "(US Left (0.25 1.50 2.24 3.00))");
+  newcomer.parent()->remove(newcomer);
+  robot.kernel.root().find("/usr/touching")->parent()->remove(*robot.kernel.root().find("/usr/touching"));
+  CHECK(robot.sense(sonar) == "(US Left (2.24 3.00 5.00 5.00))");
   chest.setLocalRotationDeg(0, 0, 180);
   CHECK(robot.sense(sonar) == "(US Left (1.00 5.00 5.00 5.00))");
   callMethod(sonar, "setRange", std::vector<Value>{0.5, 0.9});

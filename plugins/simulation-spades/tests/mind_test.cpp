@@ -288,6 +288,25 @@ TEST_CASE("an agent that floods its thought with acts is found out") {
   REQUIRE(taken < 1100);
 }
 
+TEST_CASE("the limits of one thought, on acts and requests, begin anew with the next one") {
+  Talk t;
+  const std::string act = "A" + std::string(1000, 'x');
+  Time now = 10;
+  for (int thought = 0; thought < 5; ++thought, now += 1000) {
+    CAPTURE(thought);
+    t.mind.sense(now - 10, "");
+    REQUIRE(t.at(now));
+    for (int i = 0; i < 900; ++i) REQUIRE(t.mind.take(act) == Result::nothing);  // nearly as many as are allowed
+    for (int i = 0; i < 100; ++i) t.mind.take("R" + std::to_string(now + 50));
+    t.acts.clear();
+    t.done();
+    REQUIRE(t.acts.size() == 900);
+    int notified = 0;
+    for (Time at = now + 50; t.at(at); at += 3, ++notified) t.done();
+    REQUIRE(notified == 64);
+  }
+}
+
 TEST_CASE("the last thoughts of an agent and their mean") {
   RecentThoughts thoughts;
   REQUIRE(std::isnan(thoughts.last()));

@@ -15,3 +15,17 @@ test("a game with other modes has points, soccer has goals", () => {
   expect(scored(teams().set("play_modes", ["PlayOn", "Goal_Left"]))).toEqual(["Goal for Red"]);
   expect(scored(teams().set("play_modes", ["Wait", "Fight", "Over"]))).toEqual(["Point for Red"]);
 });
+
+test("a foul that is repeated is one event; after a second it is another one, also when the clock went back", () => {
+  const environment = new Map([["team_left", "Red"]]) as Environment;
+  const reader = new EventReader();
+  const fouls = (time: number, player = 7) => reader.take(environment, [["foul", 1, 6, 1, player]], time).map((event) => [event.time, event.text]);
+  const foul = "Foul: charging of Red 7";
+  expect(fouls(100)).toEqual([[100, foul]]);
+  expect(fouls(100.2)).toEqual([]);
+  expect(fouls(101.1)).toEqual([]);
+  expect(fouls(101.1, 8)).toEqual([[101.1, "Foul: charging of Red 8"]]);
+  expect(fouls(102.2)).toEqual([[102.2, foul]]);
+  expect(fouls(3)).toEqual([[3, foul]]); // another match in the same log
+  expect(fouls(3.2)).toEqual([]);
+});
