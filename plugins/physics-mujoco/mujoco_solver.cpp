@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <iterator>
 
 #include "api/physics.h"
 #include "mjcf_constraints.h"
@@ -155,22 +156,18 @@ void MujocoSolver::reportSkipped(const Constraints& constraints) {
           pathOfConstraint(engine_.kernel().root(), number));
 }
 
-void MujocoSolver::reportRaised(const std::vector<std::uint64_t>& bodies) {
-  // Bodies that come later have higher identities.
-  std::uint64_t newest = newestRaised_, first = 0;
-  int count = 0;
-  for (const std::uint64_t id : bodies) {
-    if (id <= newestRaised_) continue;
-    newest = std::max(newest, id);
-    if (count++ == 0) first = id;
-  }
-  newestRaised_ = newest;
-  if (count == 0) return;
+void MujocoSolver::reportRaised(std::vector<std::uint64_t> bodies) {
+  std::sort(bodies.begin(), bodies.end());
+  std::vector<std::uint64_t> all, added;
+  std::set_difference(bodies.begin(), bodies.end(), raised_.begin(), raised_.end(), std::back_inserter(added));
+  std::set_union(bodies.begin(), bodies.end(), raised_.begin(), raised_.end(), std::back_inserter(all));
+  raised_ = std::move(all);
+  if (added.empty()) return;
   engine_.kernel().log().warning(
       "{}{}: its mass [kg] or moments of inertia [kg m^2] are taken as 2e-15: expected more than 1e-15, MuJoCo takes "
-      "no "
-      "less of a body that moves",
-      pathOf<IRigidBody>(engine_.kernel().root(), first), count > 1 ? fmt::format(" (and {} more)", count - 1) : "");
+      "no less of a body that moves",
+      pathOf<IRigidBody>(engine_.kernel().root(), added.front()),
+      added.size() > 1 ? fmt::format(" (and {} more)", added.size() - 1) : "");
 }
 
 void MujocoSolver::reportStiff(const engine::Model& model) {

@@ -53,7 +53,7 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   /// Logs the constraints that are left out and were not before.
   void reportSkipped(const Constraints& constraints);
   /// Logs the first of these bodies that the log does not have yet.
-  void reportRaised(const std::vector<std::uint64_t>& bodies);
+  void reportRaised(std::vector<std::uint64_t> bodies);
   /// Logs the first joint whose law MuJoCo alone could not step.
   void reportStiff(const engine::Model& model);
 
@@ -61,8 +61,8 @@ class MujocoSolver : public engine::ISolver, public engine::IDetector {
   MujocoEngine& engine_;
   std::unique_ptr<MujocoWorld> world_;
   MeshPieces pieces_;
-  std::uint64_t newestGeom_ = 0;    ///< identity: the log has its mesh
-  std::uint64_t newestRaised_ = 0;  ///< identity: the log has that its mass is raised
+  std::uint64_t newestGeom_ = 0;       ///< identity: the log has its mesh
+  std::vector<std::uint64_t> raised_;  ///< ascending identities: the log has that their masses are raised
   bool saidStiff_ = false;
   Sizes sizes_;
   double step_ = 0.005;       ///< s
