@@ -52,7 +52,8 @@ void MonitorServer::requestFullState() {
 // ---- connections (between cycles) ----
 
 void MonitorServer::connected(IConnection& connection) {
-  if (newest_.frame.shape == 0 || (!source_ && !nodes_.fresh(kernel()))) makeFrame(last_);
+  // A frame refers to nodes: those of a log may be gone.
+  if (newest_.frame.shape == 0 || source_ || !nodes_.fresh(kernel())) makeFrame(last_);
   clients_.push_back(std::make_unique<MonitorClient>(connection, newest_));
   sendTo({clients_.back().get()});
 }

@@ -425,6 +425,59 @@ TEST_CASE("damaged lines of a log and draw commands are skipped") {
   CHECK(player.text.find("is passed over: ") != std::string::npos);
 }
 
+TEST_CASE("a monitor that connects behind a jump in a log, before the next frame, sees where it leads") {
+  std::string text = join({kFull});
+  for (int i = 1; i < 5; ++i)
+    text +=
+        fmt::format("((time {:g}))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 {} 1)(nd StaticMesh)))\n", 0.2 * i, i);
+  const TemporaryFile log(text);
+  Player player(log.path);
+  setProperty(*player.player, "paused", true);
+  player.cycle();
+  for (const int record : {4, 2, 3, 1}) {
+    setProperty(*player.player, "record", std::int64_t{record});
+    Replica now;
+    FakeConnection& newcomer = player.connect();
+    now.take(newcomer.read());
+    CHECK(now.nodes.at(0).matrix[14] == static_cast<float>(record));
+  }
+}
+
+TEST_CASE("what is known of one log is forgotten when another one is opened") {
+  const auto log = [](int records, int lift) {
+    std::string text = join({kFull});
+    for (int i = 1; i < records; ++i)
+      text += fmt::format("((time {:g}))(RDS 0 1)((nd (SLT 1 0 0 0 0 1 0 0 0 0 1 0 0 0 {} 1)(nd StaticMesh)))\n",
+                          0.2 * i, i + lift);
+    return text;
+  };
+  const TemporaryFile low(log(5000, 0)), high(log(5000, 10000)), damaged(log(3, 0) + "(())\n");
+  Player player(low.path);
+  setProperty(*player.player, "paused", true);
+  const auto seen = [&](int record) {
+    setProperty(*player.player, "record", std::int64_t{record});
+    for (int i = 0; i < 3; ++i) player.cycle();  // until there is a frame
+    Replica now;
+    FakeConnection& newcomer = player.connect();
+    now.take(newcomer.read());
+    player.consumer->disconnected(newcomer);
+    return now.nodes.at(0).matrix[14];
+  };
+  for (int round = 0; round < 2; ++round) {
+    setProperty(*player.player, "file", low.path.string());
+    for (const int record : {4999, 4998, 2500, 2499}) CHECK(seen(record) == static_cast<float>(record));
+    setProperty(*player.player, "file", high.path.string());
+    for (const int record : {4992, 2496, 992}) CHECK(seen(record) == static_cast<float>(record + 10000));
+  }
+  setProperty(*player.player, "file", damaged.path.string());
+  CHECK(player.at() == 3);
+  CHECK(getProperty(*player.player, "damaged") == Value(1));
+  CHECK(getProperty(*player.player, "records") == Value(4));
+  setProperty(*player.player, "file", low.path.string());
+  CHECK(getProperty(*player.player, "damaged") == Value(0));
+  CHECK(getProperty(*player.player, "records") == Value(5000));
+}
+
 TEST_CASE("a file that is not a log is refused with an error") {
   const TemporaryFile empty(""), garbage("hello\nworld\n");
   for (const std::string& name :
