@@ -1,20 +1,12 @@
 -- row: 13
--- input: the spin of a free body is set by hand before a step, after it, and twice in a cycle; an accelerometer is beside its centre
+-- input: the spin of a free bar is set by hand before a step, after it, and twice in a cycle; an accelerometer is at
+--   its end
 -- right: it feels what its place does with that spin, and nothing of the change
 -- engines: all
 -- args: --duration 1
 include "../lib/judge.lua"
 include "../lib/senses.lua"
-files() scene() physics(engineOption()) simulation() agents{ port = 0 }
-plugin "sensors"
-get("/usr/scene/world").gravity = { 0, 0, 0 }
-local bar = new("Transform", "/usr/scene/bar")
-local body = bar:new("RigidBody", "body")
-body:setMassParameters(2, 0, 0, 0, 0.5, 0.5, 0.5, 0, 0, 0)
-local agent = bar:new("AgentAspect", "agent")
-local tip = agent:new("Transform", "tip")
-tip.localPos = { 0.8, 0, 0 }
-tip:new("Accelerometer", "tip")
+local body, agent = freeBar()
 local spin = 0
 local function spun(phase, at, to)
   on(phase, function(_, event)
@@ -30,7 +22,8 @@ spun("prepare", 0.6, 4)
 local before, across, along, samples = 0, 0, 0, 0
 watch(agent, function(seen, time)
   local a = seen["ACC tip"][3]
-  if before == spin then                               -- the percept may be of the spin before in the cycle of the change
+  -- In the cycle of the change the percept may still be of the spin before.
+  if before == spin then
     along = math.max(along, math.abs(a[2] + 0.8 * spin * spin))
     samples = samples + 1
   end

@@ -91,4 +91,5 @@ def freezes(served, mounted):
                 elif "let it go on" in line:
                     server.process.send_signal(signal.SIGCONT)
         code, again, log = verify(folder / "run.mcap")
-        judge("the recording is simulated again", code == 0 and again.get("differs", "") is None, f"{code} {again} {log}")
+        good = code == 0 and again.get("differs", "") is None
+        judge("the recording is simulated again", good, f"{code} {again} {log}")

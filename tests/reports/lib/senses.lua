@@ -15,3 +15,18 @@ end
 
 --- True in the cycle of that time.
 function isAt(time, wanted) return math.abs(time - wanted) < 0.001 end
+
+--- A bar that floats without gravity, with an accelerometer 0.8 m from its centre. Returns its body and its agent.
+function freeBar()
+  files() scene() physics(engineOption()) simulation() agents{ port = 0 }
+  plugin "sensors"
+  get("/usr/scene/world").gravity = { 0, 0, 0 }
+  local bar = new("Transform", "/usr/scene/bar")
+  local body = bar:new("RigidBody", "body")
+  body:setMassParameters(2, 0, 0, 0, 0.5, 0.5, 0.5, 0, 0, 0)
+  local agent = bar:new("AgentAspect", "agent")
+  local tip = agent:new("Transform", "tip")
+  tip.localPos = { 0.8, 0, 0 }
+  tip:new("Accelerometer", "tip")
+  return body, agent
+end

@@ -19,7 +19,8 @@ test("a game with other modes has points, soccer has goals", () => {
 test("a foul that is repeated is one event; after a second it is another one, also when the clock went back", () => {
   const environment = new Map([["team_left", "Red"]]) as Environment;
   const reader = new EventReader();
-  const fouls = (time: number, player = 7) => reader.take(environment, [["foul", 1, 6, 1, player]], time).map((event) => [event.time, event.text]);
+  const fouls = (time: number, player = 7) =>
+    reader.take(environment, [["foul", 1, 6, 1, player]], time).map((event) => [event.time, event.text]);
   const foul = "Foul: charging of Red 7";
   expect(fouls(100)).toEqual([[100, foul]]);
   expect(fouls(100.2)).toEqual([]);
