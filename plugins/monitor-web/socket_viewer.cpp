@@ -89,7 +89,11 @@ class SocketViewer : public Viewer, public std::enable_shared_from_this<SocketVi
           {beast::websocket::close_code::policy_error, beast::string_view(reason.data(), reason.size())},
           [self = shared_from_this()](error_code) {});
     } else {
-      beast::get_lowest_layer(socket_).close();  // a close frame would have to wait behind the queue
+      // A close frame would wait behind the queue, and the system would keep that for a peer that does not read.
+      auto& connection = beast::get_lowest_layer(socket_);
+      error_code ec;
+      connection.socket().set_option(boost::asio::socket_base::linger(true, 0), ec);
+      connection.close();
     }
     resume();
   }
