@@ -1,10 +1,12 @@
 # The tests use SPARK_REFERENCE_DIR of the environment in which ctest runs; the value from the configuration is the
 # default.
 file(WRITE ${CMAKE_BINARY_DIR}/environment.cmake "if(NOT DEFINED ENV{SPARK_REFERENCE_DIR})\n  set(ENV{SPARK_REFERENCE_DIR} [==[${SPARK_REFERENCE_DIR}]==])\nendif()\n")
-if(SPARK_SANITIZER STREQUAL "address")
-  # Before g++ 13, the leak detector mistakes some thread-local blocks for those of an old C library, reads out of
-  # bounds and crashes.
-  file(APPEND ${CMAKE_BINARY_DIR}/environment.cmake "set(ENV{ASAN_OPTIONS} \"intercept_tls_get_addr=0:\$ENV{ASAN_OPTIONS}\")\n")
+if(SPARK_SANITIZER)
+  # Before g++ 13, the sanitizers mistake thread-local blocks whose address happens to end in 0x010 for those of an old C
+  # library, read out of bounds and crash.
+  foreach(name ASAN_OPTIONS TSAN_OPTIONS)
+    file(APPEND ${CMAKE_BINARY_DIR}/environment.cmake "set(ENV{${name}} \"intercept_tls_get_addr=0:\$ENV{${name}}\")\n")
+  endforeach()
 endif()
 set_property(DIRECTORY ${CMAKE_SOURCE_DIR} APPEND PROPERTY TEST_INCLUDE_FILES ${CMAKE_BINARY_DIR}/environment.cmake)
 
