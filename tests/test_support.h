@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 
 #include "patience.h"
@@ -49,13 +50,28 @@ inline bool isMapped(const std::filesystem::path& file) {
   return false;
 }
 
-/// A kernel that has scanned the built plugins and logs into `text`.
+/// A kernel that has loaded the built plugins: other kernels of the program share them. To load them takes most of the
+/// time of a short world, and the address sanitizer frees nothing of what it notes about the globals of a library.
+inline std::unique_ptr<Kernel>& loadedPlugins() {
+  static std::unique_ptr<Kernel> kernel = [] {
+    auto made = std::make_unique<Kernel>();
+    made->log().setSink([](Level, std::string_view) {});
+    made->plugins().scan(pluginFolder());
+    return made;
+  }();
+  return kernel;
+}
+
+/// A kernel that has scanned the built plugins and logs into `text`. A test that looks at how plugins are unloaded
+/// resets loadedPlugins() first.
 struct TestHost {
   std::string text;
   Kernel kernel;
   explicit TestHost(bool scan = true) {
     kernel.log().setSink([this](Level, std::string_view line) { text.append(line).append("\n"); });
-    if (scan) kernel.plugins().scan(pluginFolder());
+    if (!scan) return;
+    loadedPlugins();
+    kernel.plugins().scan(pluginFolder());
   }
   ~TestHost() { kernel.log().setSink({}); }
 };

@@ -40,17 +40,8 @@ inline void scanEngines(Kernel& kernel) {
   kernel.plugins().scan(pluginFolder().parent_path() / "tests" / "engine-plugins");
 }
 
-/// Keeps the plugins of all engines loaded from the first call to the end of the program. Loading takes most of the
-/// time of a short world, and the address sanitizer frees nothing of what it notes about the globals of a library.
-inline void keepEnginesLoaded() {
-  static TestHost keeper;
-  [[maybe_unused]] static const bool loaded = [] {
-    scanEngines(keeper.kernel);
-    for (const EngineKind& kind : kEngines)
-      if (kind.built()) keeper.kernel.plugins().use(kind.plugin);
-    return true;
-  }();
-}
+/// Keeps the plugins of all engines loaded, see loadedPlugins().
+inline void keepEnginesLoaded() { [[maybe_unused]] static const bool loaded = (scanEngines(*loadedPlugins()), true); }
 
 /// A shape with triangles: a mesh, or a convex one.
 inline engine::ShapeDescription meshOf(engine::Mesh mesh, Shape shape = Shape::mesh) {
