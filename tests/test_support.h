@@ -52,18 +52,24 @@ inline bool isMapped(const std::filesystem::path& file) {
 
 /// A kernel that has loaded the built plugins: other kernels of the program share them. To load them takes most of the
 /// time of a short world, and the address sanitizer frees nothing of what it notes about the globals of a library.
-inline std::unique_ptr<Kernel>& loadedPlugins() {
-  static std::unique_ptr<Kernel> kernel = [] {
-    auto made = std::make_unique<Kernel>();
-    made->log().setSink([](Level, std::string_view) {});
-    made->plugins().scan(pluginFolder());
-    return made;
-  }();
+inline std::unique_ptr<Kernel> loadPlugins() {
+  auto kernel = std::make_unique<Kernel>();
+  kernel->log().setSink([](Level, std::string_view) {});
+  kernel->plugins().scan(pluginFolder());
   return kernel;
 }
+/// The one that lasts as long as the program.
+inline std::unique_ptr<Kernel>& loadedPlugins() {
+  static std::unique_ptr<Kernel> kernel = loadPlugins();
+  return kernel;
+}
+/// While it lives, plugins are unloaded as in a program with one kernel.
+struct PluginsUnloaded {
+  PluginsUnloaded() { loadedPlugins().reset(); }
+  ~PluginsUnloaded() { loadedPlugins() = loadPlugins(); }
+};
 
-/// A kernel that has scanned the built plugins and logs into `text`. A test that looks at how plugins are unloaded
-/// resets loadedPlugins() first.
+/// A kernel that has scanned the built plugins and logs into `text`.
 struct TestHost {
   std::string text;
   Kernel kernel;

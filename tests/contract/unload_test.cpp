@@ -24,7 +24,7 @@ std::vector<std::string> useWithBases(Kernel& kernel, const std::string& name) {
 }  // namespace
 
 TEST_CASE("Every plugin can be unloaded once its objects are destroyed, and is then no longer mapped") {
-  test::loadedPlugins().reset();
+  const test::PluginsUnloaded unloaded;
   std::vector<std::string> names;
   {
     TestHost host;

@@ -141,7 +141,7 @@ TEST_CASE("the camera moves with its transform and sees what has moved, joined a
 }
 
 TEST_CASE("the plugin can be unloaded after pictures were taken") {
-  loadedPlugins().reset();
+  const PluginsUnloaded unloaded;
   Studio studio;
   studio.take(PictureKind::colour);
   const std::string file = studio.kernel.root().require<Plugin>("/plugins/camera").file();
