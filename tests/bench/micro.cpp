@@ -7,6 +7,7 @@
 namespace spark::bench {
 
 void runMicro(bool json) {
+  registerYardsticks();
   registerJobs();
   registerBytes();
   registerRays();

@@ -7,6 +7,8 @@ namespace spark::bench {
 /// Runs all of them and prints google-benchmark's table, or its JSON.
 void runMicro(bool json);
 
+/// Registers what other times are compared with: copying memory, and a message over TCP and its answer.
+void registerYardsticks();
 /// Registers the cost of waking the kernel's threads for jobs, with and without work.
 void registerJobs();
 /// Registers the cost of the rays of 22 humanoids.
