@@ -146,8 +146,9 @@ double JointKinematics::rate(Index joint, int axis) const {
   if (j.type == JointType::angularMotor && axis >= j.motor.axes) return 0;
   if (j.type == JointType::slider) {
     const Vec3 along = times(a->rotation, j.inA.axis[0]);
-    const double found =
-        b ? dot(along, a->linearVelocity) - dot(along, b->linearVelocity) : dot(along, a->linearVelocity);
+    double found = b ? dot(along, a->linearVelocity) - dot(along, b->linearVelocity) : dot(along, a->linearVelocity);
+    // The rate of the installed base leaves out that the bodies turn.
+    if (b && !model().exactReplay) found -= dot(along, a->angularVelocity.cross(a->position - b->position));
     return !b && j.reversed ? -found : found;
   }
   const Vec3 about = worldAxis(j, axis);
