@@ -2,8 +2,8 @@
 # default.
 file(WRITE ${CMAKE_BINARY_DIR}/environment.cmake "if(NOT DEFINED ENV{SPARK_REFERENCE_DIR})\n  set(ENV{SPARK_REFERENCE_DIR} [==[${SPARK_REFERENCE_DIR}]==])\nendif()\n")
 if(SPARK_SANITIZER)
-  # Before g++ 13, the sanitizers mistake thread-local blocks whose address happens to end in 0x010 for those of an old C
-  # library, read out of bounds and crash.
+  # Before g++ 13, the sanitizers mistake thread-local blocks whose address happens to end in 0x010 for those of an old
+  # C library, read out of bounds and crash.
   foreach(name ASAN_OPTIONS TSAN_OPTIONS)
     file(APPEND ${CMAKE_BINARY_DIR}/environment.cmake "set(ENV{${name}} \"intercept_tls_get_addr=0:\$ENV{${name}}\")\n")
   endforeach()
