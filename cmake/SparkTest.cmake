@@ -1,7 +1,7 @@
 # The tests use SPARK_REFERENCE_DIR of the environment in which ctest runs; the value from the configuration is the
 # default.
 file(WRITE ${CMAKE_BINARY_DIR}/environment.cmake "if(NOT DEFINED ENV{SPARK_REFERENCE_DIR})\n  set(ENV{SPARK_REFERENCE_DIR} [==[${SPARK_REFERENCE_DIR}]==])\nendif()\n")
-if(SPARK_SANITIZER)
+if(NOT SPARK_SANITIZER STREQUAL "none")
   # Before g++ 13, the sanitizers mistake thread-local blocks whose address happens to end in 0x010 for those of an old
   # C library, read out of bounds and crash.
   foreach(name ASAN_OPTIONS TSAN_OPTIONS)

@@ -67,6 +67,8 @@ inline std::unique_ptr<Kernel>& loadedPlugins() {
 struct PluginsUnloaded {
   PluginsUnloaded() { loadedPlugins().reset(); }
   ~PluginsUnloaded() { loadedPlugins() = loadPlugins(); }
+  PluginsUnloaded(const PluginsUnloaded&) = delete;
+  PluginsUnloaded& operator=(const PluginsUnloaded&) = delete;
 };
 
 /// A kernel that has scanned the built plugins and logs into `text`.

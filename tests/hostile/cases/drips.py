@@ -5,11 +5,11 @@
 # right: each is closed at its limit, and one that does all at once is served all the while
 import base64
 import os
+import select
 import socket
 import struct
 import sys
 import threading
-import time
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "lib"))
@@ -79,9 +79,12 @@ def reads_in_drips(port):
         )
         request = b'{"do":"view","rate":50}'
         client.sendall(bytes([0x81, 0x80 | len(request), 0, 0, 0, 0]) + request)
+        end = select.poll()
+        end.register(client, 0)  # of errors and the end it tells unasked
         client.settimeout(PAUSE)
         for count in range(LONG):
-            time.sleep(PAUSE)
+            if end.poll(1000 * PAUSE):
+                return count
             try:
                 if not client.recv(16):
                     return count
