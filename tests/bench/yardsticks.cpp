@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include "micro.h"
@@ -18,7 +17,7 @@
 namespace spark::bench {
 
 namespace {
-constexpr std::size_t kCopied = 64 << 10, kPercepts = 1300, kActions = 400;  // bytes
+constexpr std::size_t kCopied = 64 << 10, kPercepts = 1300, kActions = 280;  // bytes
 
 int checked(int result) {
   if (result < 0) throw std::system_error(errno, std::generic_category(), "a socket for the echo");
